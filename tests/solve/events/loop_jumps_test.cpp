@@ -135,6 +135,22 @@ set = { n = "n + 1" }
   EXPECT_EQ(row_values(run_of(made), "n").back(), 0);
 }
 
+// y = −0.3 − 2 f(y/2), f = −y/4 below zero and −0.875 above: y = −0.6 and y = 1.45, in linear equations of
+// which the jump chooses one.
+TEST(LoopJumps, OfALinearLoopWithAJumpThatHasTwoSolutionsAreTold) {
+  for (
+      const std::string& blocks : both_orders(
+          {R"(y = { type = "summer", in = ["-0.3*one", "-2*f"] })", R"(one = { type = "constant" })",
+           R"(f = { type = "function-generator", in = "0.5*y", points = [[-1, 0.5], [0, 0], [0, -0.875], [1, -0.875]] })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1});
+    const double y = row_values(result, "y").front();
+    EXPECT_NEAR(y, y < 0 ? -0.6 : 1.45, 1e-12);  // rounding
+    ASSERT_EQ(result.warnings.size(), 1U) << blocks;
+    EXPECT_THAT(result.warnings[0].what,
+                HasSubstr("' has several solutions: at t = 0 s the run begins with "));
+  }
+}
+
 /// Two gates of which each is low while the other, or its own input, is high.
 std::vector<std::string> latch(const std::string& set) {
   return {R"(q = { type = "comparator", in = ["0.5*one", "-r", "-p"] })",

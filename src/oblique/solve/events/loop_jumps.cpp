@@ -30,11 +30,15 @@ bool is_stable(const Eigen::MatrixXd& rates) {
   return rates.partialPivLu().determinant() > 0;
 }
 
+bool is_small(const network::Program& program, std::size_t loop) {
+  return program.loops()[loop].unknowns.size() <= kMostUnknowns;
+}
+
 /// How the residual of each unknown of a loop moves it; empty where one is of an equation that says nothing
 /// of that, or they are too many.
 Eigen::VectorXd directions_of(const network::Program& program, std::size_t loop) {
+  if (!is_small(program, loop)) return {};
   const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
-  if (unknowns.size() > kMostUnknowns) return {};
   Eigen::VectorXd directions(static_cast<Eigen::Index>(unknowns.size()));
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const network::Unknown& unknown = program.unknowns()[unknowns[i]];
@@ -46,6 +50,34 @@ Eigen::VectorXd directions_of(const network::Program& program, std::size_t loop)
 
 }  // namespace
 
+LoopSwitches switches_on(const network::Program& program, std::size_t loop) {
+  LoopSwitches found;
+  const std::vector<bool> follows = program.switch_structure().followers_of_loop(loop);
+  const std::vector<bool> acts = program.switch_structure().discrete_states_below_loop(loop);
+  for (std::uint32_t s = 0; s < follows.size(); ++s) {
+    const network::Switch& made = program.switches()[s];
+    if (!follows[s] || made.rate) continue;
+    const auto segment = made.moves_along
+                             ? std::optional(program.events()[*made.moves_along].actions.front().index)
+                             : std::nullopt;
+    if (!acts[segment.value_or(made.discrete_state)]) continue;
+    found.switches.push_back(s);
+    found.discrete_states.push_back(made.discrete_state);
+    if (!segment) continue;
+    found.tables.push_back(*made.moves_along);
+    found.discrete_states.push_back(*segment);
+  }
+  return found;
+}
+
+bool may_have_several(const network::Program& program, std::size_t loop) {
+  const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
+  return std::all_of(unknowns.begin(), unknowns.end(),
+                     [&](std::size_t u) { return program.unknowns()[u].torn; }) &&
+         (!program.loop_is_linear(loop) ||
+          (is_small(program, loop) && !switches_on(program, loop).switches.empty()));
+}
+
 LoopJumps::LoopJumps(const network::Program& program, network::Workspace& workspace,
                      const Thresholds& thresholds)
     : program_(program),
@@ -54,28 +86,11 @@ LoopJumps::LoopJumps(const network::Program& program, network::Workspace& worksp
       event_functions_(program.switches().size()),
       signals_(program.n_signals()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    Watched watched;
-    watched.loop = loop;
-    watched.directions = directions_of(program, loop);
-    if (watched.directions.size() == 0) continue;
-    watched.blind = watched.directions.minCoeff() > 0;
-    const std::vector<bool> follows = program.switch_structure().followers_of_loop(loop);
-    const std::vector<bool> acts = program.switch_structure().discrete_states_below_loop(loop);
-    for (std::uint32_t s = 0; s < follows.size(); ++s) {
-      const network::Switch& made = program.switches()[s];
-      if (!follows[s] || made.rate) continue;
-      const auto segment = made.moves_along
-                               ? std::optional(program.events()[*made.moves_along].actions.front().index)
-                               : std::nullopt;
-      if (!acts[segment.value_or(made.discrete_state)]) continue;
-      watched.switches.push_back(s);
-      watched.discrete_states.push_back(made.discrete_state);
-      if (!segment) continue;
-      watched.tables.push_back(*made.moves_along);
-      watched.discrete_states.push_back(*segment);
-    }
+    Watched watched{switches_on(program, loop), loop, directions_of(program, loop)};
     // Of linear equations that nothing changes on the way there is one solution.
-    if (program.loop_is_linear(loop) && watched.switches.empty()) continue;
+    if (watched.directions.size() == 0 || (program.loop_is_linear(loop) && watched.switches.empty()))
+      continue;
+    watched.blind = watched.directions.minCoeff() > 0;
     any_blind_ = any_blind_ || watched.blind;
     watched_.push_back(std::move(watched));
   }
@@ -105,6 +120,16 @@ void LoopJumps::note(double t, std::span<const double> x) {
   }
   begin();
   for (std::size_t k = 0; k < watched_.size(); ++k) watched_[k].stable = stable[k];
+}
+
+void LoopJumps::place(std::size_t loop, const std::vector<double>& unknowns, double t,
+                      std::span<const double> x) {
+  for (const Watched& watched : watched_) {
+    if (watched.loop != loop) continue;
+    workspace_.hold_loop(loop, t, unknowns, true);
+    place(watched, t, x, workspace_);
+    workspace_.hold_loop(loop, std::numeric_limits<double>::quiet_NaN(), {}, false);
+  }
 }
 
 bool LoopJumps::settle(double t, std::span<const double> x) {

@@ -14,6 +14,19 @@
 
 namespace oblique::solve {
 
+/// What turns over with the unknowns of an algebraic loop, and acts on it.
+struct LoopSwitches {
+  std::vector<std::uint32_t> switches;
+  std::vector<std::size_t> tables;             ///< the events that move them along
+  std::vector<std::uint32_t> discrete_states;  ///< of these
+};
+LoopSwitches switches_on(const network::Program& program, std::size_t loop);
+
+/// Whether nothing but elements whose outputs follow their inputs is on a loop, and it may have several
+/// solutions: of linear equations on which no switch acts there is one. Switches of loops of more than 32
+/// unknowns do not count.
+bool may_have_several(const network::Program& program, std::size_t loop);
+
 /// Looks after the algebraic loops of elements without memory where an event has come. Between events such a
 /// loop keeps to its solution. An event may take that away, or leave the loop at one from which its elements
 /// would run away; and where there are several, Newton's method goes to any. The loop then goes where its
@@ -31,6 +44,8 @@ class LoopJumps {
   void begin();
   /// Notes the solutions at (t, x), before what happens next.
   void note(double t, std::span<const double> x);
+  /// Puts the switches and tables of a loop where these unknowns ask for them, whether they solve it or not.
+  void place(std::size_t loop, const std::vector<double>& unknowns, double t, std::span<const double> x);
   /// Looks at all loops at (t, x), where everything has settled. True where one was put elsewhere: everything
   /// is then to be settled again.
   bool settle(double t, std::span<const double> x);
@@ -39,15 +54,11 @@ class LoopJumps {
   bool go_from_guesses(double t, std::span<const double> x);
 
  private:
-  /// A loop, and what in it turns over with its unknowns.
-  struct Watched {
+  struct Watched : LoopSwitches {
     std::size_t loop = 0;
-    bool blind = true;           ///< of elements without memory alone
     Eigen::VectorXd directions;  ///< of each unknown: an amplifier moves as −residual, another as +residual
-    std::vector<std::uint32_t> switches;
-    std::vector<std::size_t> tables;             ///< the events that move them along
-    std::vector<std::uint32_t> discrete_states;  ///< of these
-    bool stable = true;                          ///< when it was noted
+    bool blind = true;           ///< of elements without memory alone
+    bool stable = true;          ///< when it was noted
   };
 
   /// The residuals of a loop, and how they move its unknowns.

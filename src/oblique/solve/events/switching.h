@@ -44,6 +44,12 @@ class Switching {
   /// Whether there is anything to watch.
   bool active() const { return !program_.switches().empty() || !program_.events().empty(); }
 
+  /// Puts the switches of an algebraic loop where these unknowns ask for them, before the start.
+  void place_loop(std::size_t loop, const std::vector<double>& unknowns, double t,
+                  std::span<const double> x) {
+    loop_jumps_.place(loop, unknowns, t, x);
+  }
+
   /// Settles switches and events at the start of the run, and the states that start from signals.
   /// `bring_to_rest` is called whenever something has changed that servo loops may follow; it throws
   /// SolveError where they do not settle. With `loops_go` the algebraic loops without amplifiers go to where

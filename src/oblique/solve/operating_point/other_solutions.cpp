@@ -8,19 +8,13 @@
 #include <fmt/format.h>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/loop_jumps.h>
 #include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/text/even_point.h>
 
 namespace oblique::solve {
 namespace {
-
-bool chooses_blindly(const network::Program& program, std::size_t loop) {
-  const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
-  return !program.loop_is_linear(loop) && std::all_of(unknowns.begin(), unknowns.end(), [&](std::size_t u) {
-    return program.unknowns()[u].torn;
-  });
-}
 
 constexpr int kPoints = 24;
 constexpr double kReach = 3;  // [machine unit]
@@ -76,7 +70,7 @@ StartChoice choose_start(const network::Program& program, double t, const std::s
   StartChoice choice;
   std::vector<std::size_t> blind;
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    if (chooses_blindly(program, loop)) blind.push_back(loop);
+    if (may_have_several(program, loop)) blind.push_back(loop);
   }
   if (blind.empty()) return choice;
   std::optional<StartOutcome> solution = start({});

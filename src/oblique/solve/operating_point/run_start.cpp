@@ -37,6 +37,7 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
     const std::vector<std::size_t>& unknowns = program.loops()[*parts.loop_start.loop].unknowns;
     for (std::size_t i = 0; i < unknowns.size(); ++i)
       parts.workspace.set_unknown(unknowns[i], parts.loop_start.unknowns[i]);
+    parts.switching.place_loop(*parts.loop_start.loop, parts.loop_start.unknowns, t, states);
   }
   std::vector<text::Diagnostic> warnings;
   std::vector<double> signals(program.n_signals());
