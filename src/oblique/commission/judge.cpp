@@ -162,10 +162,6 @@ Judgement judge_at(const std::vector<solve::Instant>& instants, const diagram::F
   return judgement;
 }
 
-}  // namespace
-
-namespace {
-
 /// At so many moments of its run with instant servos, the first one the start.
 Judgement judge_moments(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                         std::size_t moments) {
