@@ -125,10 +125,6 @@ bool may_pass(std::span<const double> f, std::size_t k, double sign, double bar)
   return here >= before && here >= after && here + std::max(here - before, here - after) >= bar;
 }
 
-}  // namespace
-
-namespace {
-
 double largest_of(std::span<const double> f) {
   double largest = 0;
   for (const double value : f) largest = std::max(largest, std::abs(value));
