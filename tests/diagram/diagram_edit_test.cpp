@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/diagram/diagram_edit.h>
+#include <oblique/diagram/edit/diagram_edit.h>
 
 #include <functional>
 
 #include <gtest/gtest.h>
 
 #include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/edit/written_wires.h>
 #include <oblique/diagram/flatten.h>
 #include <oblique/text/file.h>
 

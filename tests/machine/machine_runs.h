@@ -22,6 +22,19 @@ inline solve::Trajectory trajectory_of(const diagram::Diagram& diagram) {
       .trajectory;
 }
 
+/// The greatest magnitude of a signal in a run of its own, at its rows.
+inline double greatest_signal(const diagram::Diagram& diagram) {
+  diagram::Diagram all = diagram;
+  all.outputs.clear();  // then every signal is one
+  all.expectations.clear();
+  const solve::Trajectory run = trajectory_of(all);
+  double most = 0;
+  for (std::size_t r = 0; r < run.rows(); ++r) {
+    for (std::size_t c = 1; c < run.columns().size(); ++c) most = std::max(most, std::abs(run.at(r, c)));
+  }
+  return most;
+}
+
 /// The largest difference of any output at any time, relative to the largest value of all.
 inline double difference(const diagram::Diagram& one, const diagram::Diagram& other) {
   const solve::Trajectory a = trajectory_of(one), b = trajectory_of(other);

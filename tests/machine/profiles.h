@@ -29,4 +29,11 @@ inline diagram::MachineProfile signed_machine() {
   return machine;
 }
 
+/// Inverting, with inputs of 1 and 10 and integrators of 1 to 1000 1/s.
+inline diagram::MachineProfile desk_machine() {
+  diagram::MachineProfile machine = inverting_machine();
+  machine.rates = {1, 10, 100, 1000};
+  return machine;
+}
+
 }  // namespace oblique::testing

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
@@ -17,10 +15,7 @@
 
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/diagram_writer.h>
-#include <oblique/diagram/flatten.h>
 #include <oblique/machine/realise.h>
-#include <oblique/network/assembly/network.h>
-#include <oblique/network/program/program.h>
 #include <oblique/solve/run.h>
 
 #include "machine_runs.h"
@@ -29,138 +24,16 @@
 namespace oblique::machine {
 namespace {
 
+using testing::desk_machine;
 using testing::expect_machine_elements;
+using testing::greatest_signal;
 using ::testing::HasSubstr;
 using testing::inverting_machine;
 using testing::shipped_blocks;
 using testing::trajectory_of;
 
-/// Inverting, with inputs of 1 and 10 and integrators of 1 to 1000 1/s.
-diagram::MachineProfile desk_machine() {
-  diagram::MachineProfile machine = inverting_machine();
-  machine.rates = {1, 10, 100, 1000};
-  return machine;
-}
-
 diagram::Diagram parsed(const std::string& text) {
   return diagram::parse_diagram("format = \"oblique-diagram/1\"\n" + text, "test.toml");
-}
-
-diagram::Diagram on_ideal_elements(diagram::Diagram diagram) {
-  diagram.machine.profile = "ideal";
-  return diagram;
-}
-
-/// The greatest magnitude of a signal in a run of its own, at its rows.
-double greatest_signal(const diagram::Diagram& diagram) {
-  diagram::Diagram all = diagram;
-  all.outputs.clear();  // then every signal is one
-  all.expectations.clear();
-  const solve::Trajectory run = trajectory_of(all);
-  double most = 0;
-  for (std::size_t r = 0; r < run.rows(); ++r) {
-    for (std::size_t c = 1; c < run.columns().size(); ++c) most = std::max(most, std::abs(run.at(r, c)));
-  }
-  return most;
-}
-
-/// What becomes of a shipped diagram: it is realised, and its outputs then differ by at most `within` of the
-/// largest of them, or it is refused with these words.
-struct Fate {
-  double within = 1e-7;
-  std::string refused = {};
-  double until = 0;  ///< [s] of the diagram, where a chaotic one is to be run for less than its own time
-};
-
-/// Integrators jump between phases, and a row may lie there: what these give is held by their `[expect]`
-/// (`DiagramOnMachine.KeepsModesOfOperation`).
-constexpr double kJumps = std::numeric_limits<double>::infinity();
-
-// Ideal elements give the same frozen equations: what is left is the solver's tolerance of 1e-8 and what
-// gathers of it over the run. A function generator of 200 lines is off by 1/(16·200²)·(∫√|f″|)² < 1e-5 of a
-// smooth function, which the loops about it may enlarge.
-const std::map<std::string, Fate> kFates = {
-    {"lessons/aizawa", {1e-5, {}, 10}},
-    {"lessons/backlash-servo", {0, "has no backlash, which 'load', 'load_c', 'load_s' are"}},
-    {"lessons/bouncing-ball", {0, "has no counter, which 'count' is"}},
-    {"lessons/double-pendulum", {1e-6}},
-    {"lessons/inverse-sine", {1e-4}},
-    {"lessons/iterative-operation", {kJumps}},
-    {"lessons/logarithmic-multiplier", {1e-4}},
-    {"lessons/oscilloscope-switch", {0, "'channel.out0' (demultiplexer) jumps"}},
-    {"lessons/range-of-a-throw", {0, "has no counter, which 'throws' is"}},
-    {"lessons/relay-oscillator", {0, "has no counter, which 'periods' is"}},
-    {"lessons/repetitive-operation", {kJumps}},
-    {"lessons/sampled-regulator", {0, "has no track-and-store, which "}},
-    {"lessons/stick-slip", {0, "has no flip-flop, which 'sticks' is"}},
-    {"lessons/three-body", {1e-4, {}, 1}},
-    {"lessons/triangle-aas", {1e-5}},
-    {"lessons/triangle-asa", {1e-5}},
-    // The start of a run latches a table in a servo loop at its first line, where this loop diverges.
-    {"lessons/triangle-sas", {0, "with straight lines in the place of 'vector.cosine'"}},
-    {"lessons/triangle-side", {1e-4}},
-    {"lessons/triangle-sss", {1e-4}},
-    {"historical/chua", {1e-5, {}, 10}},
-    {"historical/chua-piecewise", {1e-5, {}, 10}},
-    {"historical/epidemic", {1e-4}},
-    {"historical/lorenz", {1e-5, {}, 2}},
-    {"historical/lotka-volterra", {1e-4}},
-    {"historical/roessler", {1e-5, {}, 20}},
-    {"historical/shooting", {kJumps}},
-};
-
-std::vector<std::string> shipped_diagrams() {
-  std::vector<std::string> names;
-  for (const std::string folder : {"lessons", "historical"}) {
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + folder))
-      names.push_back(folder + "/" + entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-class ScaledDiagram : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(ScaledRealisation, ScaledDiagram, ::testing::ValuesIn(shipped_diagrams()),
-                         [](const auto& tested) {
-                           std::string name = tested.param;
-                           for (char& c : name)
-                             c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-                           return name;
-                         });
-
-TEST_P(ScaledDiagram, GivesOnAMachineWhatItGave) {
-  const auto known = kFates.find(GetParam());
-  const Fate fate = known == kFates.end() ? Fate() : known->second;
-  diagram::Diagram diagram =
-      diagram::read_diagram(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + GetParam() + ".toml");
-  if (fate.until > 0) {
-    diagram.run.until = fate.until;
-    diagram.expectations.clear();
-  }
-  diagram = on_ideal_elements(diagram);
-  ScalingOptions options;
-  options.segments = 200;
-  ScaledRealisation made;
-  try {
-    made = realise_scaled(diagram, shipped_blocks(), desk_machine(), options);
-  } catch (const RealiseError& error) {
-    EXPECT_NE(fate.refused, "") << error.what();
-    EXPECT_THAT(error.what(), HasSubstr(fate.refused));
-    fmt::print("{:30} refused: {}\n", GetParam(), error.diagnostics().front().what);
-    return;
-  }
-  ASSERT_EQ(fate.refused, "") << "it is realised";
-  expect_machine_elements(made.diagram, false);
-  EXPECT_LE(greatest_signal(made.diagram), 1 + 1e-5);
-  const double difference = testing::difference(diagram, made.diagram);
-  EXPECT_LT(difference, fate.within) << diagram::write_diagram(made.diagram);
-  const auto least =
-      std::min_element(made.scales.begin(), made.scales.end(),
-                       [](const SignalScale& a, const SignalScale& b) { return a.largest < b.largest; });
-  fmt::print("{:30} {:3} blocks, 1 s in {:g} s, signals to {:.3f} ('{}') or more, outputs within {:.1e}\n",
-             GetParam(), made.diagram.blocks.size(), made.time, least->largest, least->signal, difference);
-  EXPECT_TRUE(diagram::parse_diagram(diagram::write_diagram(made.diagram), "made.toml") == made.diagram);
 }
 
 // Integrators, open amplifiers and function generators have a range of their own, which they use.

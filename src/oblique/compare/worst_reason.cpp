@@ -9,7 +9,7 @@
 
 #include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/structure/structure.h>
-#include <oblique/solve/events/driving_states.h>
+#include <oblique/solve/readings/driving_states.h>
 #include <oblique/solve/stability/loop_report.h>
 #include <oblique/solve/stability/stability_report.h>
 

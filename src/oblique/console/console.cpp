@@ -3,14 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <oblique/console/carried_state.h>
+#include <oblique/console/kept_pots.h>
+#include <oblique/console/modes_by_hand.h>
 #include <oblique/console/pots.h>
+#include <oblique/console/probe_set.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/runner.h>
 
@@ -46,47 +48,6 @@ struct Machine {
   }
 };
 
-diagram::Phase whole_phase(diagram::OperatingMode mode) {
-  diagram::Phase phase;
-  phase.mode = mode;
-  phase.duration = std::numeric_limits<double>::infinity();
-  return phase;
-}
-
-/// The modes that a console without a timeline has, each in an endless phase; the first is a run's own.
-constexpr diagram::OperatingMode kModes[] = {diagram::OperatingMode::operate, diagram::OperatingMode::initial,
-                                             diagram::OperatingMode::hold, diagram::OperatingMode::potset};
-
-diagram::Timeline modes_by_hand() {
-  diagram::Timeline timeline;
-  for (const diagram::OperatingMode each : kModes) timeline.phases.push_back(whole_phase(each));
-  return timeline;
-}
-
-solve::PhasePosition position_in(diagram::OperatingMode mode) {
-  solve::PhasePosition position;
-  position.phase =
-      static_cast<std::size_t>(std::find(std::begin(kModes), std::end(kModes), mode) - std::begin(kModes));
-  return position;
-}
-
-/// Modes that were set by hand are in a state that was saved then: sets those of a machine so that it has
-/// them too, and none where the state knows of none.
-void take_modes_of(solve::RunState& state, Pots& pots) {
-  const auto known = std::find_if(state.memories.begin(), state.memories.end(), [](const auto& memory) {
-    return memory.first.starts_with("mode of group ");
-  });
-  const std::vector<diagram::Phase>& phases = pots.diagram().timeline.phases;
-  if (known == state.memories.end()) {
-    if (!phases.empty()) pots.set_timeline({});
-    return;
-  }
-  const auto mode = static_cast<diagram::OperatingMode>(static_cast<int>(known->second));
-  if (state.position.phase < phases.size() && phases[state.position.phase].mode == mode) return;
-  pots.set_timeline(modes_by_hand());
-  state.position = position_in(mode);
-}
-
 }  // namespace
 
 class Console::Held {
@@ -110,18 +71,18 @@ class Console::Held {
     take_turned_pots();
     known_ = false;
     while (until > machine_->runner.piece_end()) {
-      show_probes(machine_->runner.piece_end());
+      probes_.look(piece_until(machine_->runner.piece_end()));
       time_ = machine_->runner.piece_end();
       if (std::exchange(looks_ahead_, false)) machine_->runner.pass();
       looks_ahead_ = machine_->runner.look_ahead();
       if (!looks_ahead_) go_on_beyond(until);
     }
-    show_probes(until);
+    probes_.look(piece_until(until));
     time_ = until;
   }
 
   Reading read(std::string_view name) {
-    if (const auto channel = channel_of(name)) return {channel->value(signals()), channel->unit};
+    if (const auto channel = find_channel(pots_, name)) return {channel->value(signals()), channel->unit};
     if (const auto pot = pots_.setting_of(name)) return {pot->value, pot->unit};
     std::vector<std::string> candidates = output_names();
     const std::vector<std::string>&names = signal_names(), pots = pots_.names();
@@ -150,11 +111,7 @@ class Console::Held {
     return signals_;
   }
 
-  std::vector<std::string> output_names() const {
-    std::vector<std::string> names;
-    for (const diagram::FlatOutput& output : pots_.flat()->outputs) names.push_back(output.name);
-    return names;
-  }
+  std::vector<std::string> output_names() const { return console::output_names(*pots_.flat()); }
 
   const std::vector<std::string>& signal_names() { return pots_.program()->signal_names(); }
 
@@ -170,34 +127,12 @@ class Console::Held {
   }
 
   std::size_t set_probe(ProbeSettings settings) {
-    SetProbe made;
-    for (const std::string& name : settings.names) made.channels.push_back(known_channel(name));
-    if (settings.names.empty()) refuse_probe("it has no names", "at least one");
-    if (!(settings.interval >= 0)) refuse_probe("its interval is no time", "0 or more seconds");
-    if (!(settings.length > 0)) refuse_probe("its traces have no length", "more than 0 seconds");
-    if (const auto& trigger = settings.trigger) {
-      made.channels.push_back(known_channel(trigger->name));
-      if (!std::isfinite(trigger->level)) refuse_probe("its level is no number", "a finite number");
-      if (!(trigger->hold_off >= 0)) refuse_probe("its hold-off is no time", "0 or more seconds");
-    }
+    probes_.check(settings);
     take_turned_pots();
-    made.probe = std::make_unique<Probe>(std::move(settings), time_);
-    probes_.push_back(std::move(made));
-    show_probe(probes_.back(), time_);
-    return probes_.size() - 1;
+    return probes_.set(std::move(settings), piece_until(time_));
   }
 
-  const std::vector<Trace>& traces(std::size_t number) const { return probe(number).probe->traces(); }
-
-  std::vector<Trace> take_traces(std::size_t number) {
-    probe(number);
-    return probes_[number].probe->take_ended();
-  }
-
-  void remove_probe(std::size_t number) {
-    probe(number);
-    probes_[number].probe.reset();
-  }
+  ProbeSet& probes() { return probes_; }
 
   std::vector<diagram::ParameterOverride> exchange(diagram::Diagram diagram,
                                                    const diagram::BlockLibrary& library,
@@ -211,13 +146,11 @@ class Console::Held {
                                           "begin again with the new one"});
     }
     const solve::RunState state = save();
-    std::vector<diagram::ParameterOverride> kept = kept_pots(diagram, renamed);
+    std::vector<diagram::ParameterOverride> kept = kept_pots(pots_, diagram, renamed);
     Pots next(std::move(diagram), library, kept);
     go_on(next, carried_state(state, *pots_.program(), signals(), *next.program(), renamed));
     pots_ = std::move(next);
-    for (SetProbe& set : probes_) {
-      if (set.probe) find_channels_again(set);
-    }
+    probes_.find_again();
     return kept;
   }
 
@@ -236,13 +169,7 @@ class Console::Held {
                            "two times above 0: in initial condition, and in operation",
                            {}});
     }
-    diagram::Timeline timeline;
-    timeline.phases = {whole_phase(diagram::OperatingMode::initial),
-                       whole_phase(diagram::OperatingMode::operate)};
-    timeline.phases[0].duration = initial;
-    timeline.phases[1].duration = operate;
-    timeline.cycles = std::numeric_limits<double>::infinity();
-    go_through(std::move(timeline), {0, 0, time_});
+    go_through(repetition(initial, operate), {0, 0, time_});
   }
 
   solve::RunState save() {
@@ -257,9 +184,7 @@ class Console::Held {
     horizon_ = std::max(horizon_, 2 * state.time);
     go_on(pots, std::move(state));
     pots_ = std::move(pots);
-    for (const SetProbe& set : probes_) {
-      if (set.probe) set.probe->jump(time_);
-    }
+    probes_.jump(time_);
   }
 
   std::vector<solve::EventRecord> events() const {
@@ -281,123 +206,10 @@ class Console::Held {
   }
 
  private:
-  /// An output or a signal as it is read.
-  struct Channel {
-    std::size_t signal = 0;
-    double scale = 1, offset = 0;
-    std::string unit;
-
-    double value(const std::vector<double>& signals) const { return scale * signals[signal] + offset; }
-  };
-  struct SetProbe {
-    std::vector<Channel> channels;  ///< of its names and, at the end, of its trigger
-    std::unique_ptr<Probe> probe;   ///< none once it is taken away
-  };
-
-  std::optional<Channel> channel_of(std::string_view name) {
-    for (const diagram::FlatOutput& output : pots_.flat()->outputs) {
-      if (output.name == name)
-        return Channel{pots_.program()->signal_index(output.signal), output.scale, output.offset,
-                       output.unit};
-    }
-    const std::vector<std::string>& names = signal_names();
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) return std::nullopt;
-    return Channel{static_cast<std::size_t>(found - names.begin()), 1, 0, "machine unit"};
-  }
-
-  Channel known_channel(std::string_view name) {
-    if (auto channel = channel_of(name)) return *channel;
-    std::vector<std::string> candidates = output_names();
-    for (const std::string& signal : signal_names()) {
-      if (std::find(candidates.begin(), candidates.end(), signal) == candidates.end())
-        candidates.push_back(signal);
-    }
-    throw ConsoleError(text::Diagnostic{{pots_.diagram().file, {}},
-                                        fmt::format("there is no signal '{}' for a probe", name),
-                                        "the name of an output, a block or one of its outputs",
-                                        text::suggest(name, candidates)});
-  }
-
-  /// The pots that are turned and of which another diagram says the same.
-  std::vector<diagram::ParameterOverride> kept_pots(const diagram::Diagram& next,
-                                                    const Renamed& renamed) const {
-    std::vector<diagram::ParameterOverride> kept;
-    for (const diagram::BlockInstance& now : next.blocks) {
-      const std::string name = path_before(now.name, renamed);
-      const auto& blocks = pots_.diagram().blocks;
-      const auto before = std::find_if(
-          blocks.begin(), blocks.end(),
-          [&](const diagram::BlockInstance& block) { return block.name == name && block.type == now.type; });
-      if (before == blocks.end()) continue;
-      for (const diagram::ParameterOverride& turned : pots_.turned()) {
-        if (!turned.path.starts_with(name + ".")) continue;
-        const std::string pot = turned.path.substr(name.size() + 1);
-        if (says_the_same(*before, now, pot)) kept.push_back({now.name + "." + pot, turned.value});
-      }
-    }
-    return kept;
-  }
-
-  /// Whether two files say the same of a parameter of a block; of a weight or of what is inside, of the
-  /// whole.
-  static bool says_the_same(const diagram::BlockInstance& before, const diagram::BlockInstance& now,
-                            const std::string& pot) {
-    const auto said = [&](const diagram::BlockInstance& block) {
-      diagram::BlockInstance part;
-      const bool is_parameter = pot.find_first_of(".[") == std::string::npos;
-      for (const text::Entry& setting : block.settings) {
-        if (!is_parameter || setting.key == pot) part.settings.push_back(setting);
-      }
-      return part;
-    };
-    return said(before) == said(now);
-  }
-
-  /// Of a machine in which signals stand elsewhere.
-  void find_channels_again(SetProbe& set) {
-    const ProbeSettings& settings = set.probe->settings();
-    std::vector<std::string> names = settings.names;
-    if (settings.trigger) names.push_back(settings.trigger->name);
-    set.channels.clear();
-    for (const std::string& name : names) {
-      if (auto channel = channel_of(name)) {
-        set.channels.push_back(*channel);
-      } else {
-        set.probe.reset();
-        return;
-      }
-    }
-  }
-
-  [[noreturn]] void refuse_probe(const std::string& what, const std::string& expected) const {
-    throw ConsoleError(
-        text::Diagnostic{{pots_.diagram().file, {}}, "a probe cannot be set: " + what, expected, {}});
-  }
-
-  const SetProbe& probe(std::size_t number) const {
-    if (number < probes_.size() && probes_[number].probe) return probes_[number];
-    throw ConsoleError(
-        text::Diagnostic{{pots_.diagram().file, {}},
-                         fmt::format("there is no probe number {}", number),
-                         "a number that 'set_probe' has given, of a probe that is not taken away",
-                         {}});
-  }
-
-  /// Shows the probes what the machine does from where it stands until `end`, within one piece.
-  void show_probes(double end) {
-    for (const SetProbe& set : probes_) {
-      if (set.probe) show_probe(set, end);
-    }
-  }
-
-  void show_probe(const SetProbe& set, double end) {
-    set.probe->look(time_, end, end == machine_->runner.piece_end(),
-                    [&](double t, std::vector<double>& values) {
-                      machine_->runner.signals_at(t, probed_);
-                      values.clear();
-                      for (const Channel& channel : set.channels) values.push_back(channel.value(probed_));
-                    });
+  /// What the machine does from where it stands until `end`, within one piece.
+  ProbeSet::Piece piece_until(double end) const {
+    return {time_, end, end == machine_->runner.piece_end(),
+            [this](double t, std::vector<double>& values) { machine_->runner.signals_at(t, values); }};
   }
 
   void refuse_with_timeline() const {
@@ -455,8 +267,7 @@ class Console::Held {
   bool looks_ahead_ = false;  ///< whether a piece was looked at that has not been passed
   std::vector<double> signals_;
   bool known_ = false;  ///< whether these are those at `time_`
-  std::vector<SetProbe> probes_;
-  std::vector<double> probed_;
+  ProbeSet probes_{pots_};
   std::vector<solve::EventRecord> events_;  ///< of the machines before
   std::vector<text::Diagnostic> warnings_;
 };
@@ -506,13 +317,13 @@ std::size_t Console::set_probe(ProbeSettings settings) {
   return held_->set_probe(std::move(settings));
 }
 const std::vector<Trace>& Console::traces(std::size_t probe) const {
-  return held_->traces(probe);
+  return held_->probes().traces(probe);
 }
 std::vector<Trace> Console::take_traces(std::size_t probe) {
-  return held_->take_traces(probe);
+  return held_->probes().take_traces(probe);
 }
 void Console::remove_probe(std::size_t probe) {
-  held_->remove_probe(probe);
+  held_->probes().remove(probe);
 }
 void Console::set_mode(diagram::OperatingMode mode) {
   held_->set_mode(mode);

@@ -5,7 +5,35 @@
 
 #include <fmt/format.h>
 
+#include <oblique/text/document.h>
+
 namespace oblique::text {
+namespace {
+
+bool is_toml_number(const std::string& text) {
+  std::size_t at = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+  const auto digits = [&] {
+    const std::size_t begin = at;
+    while (at < text.size() && text[at] >= '0' && text[at] <= '9') ++at;
+    return at > begin;
+  };
+  const std::size_t first = at;
+  if (!digits()) return false;
+  if (text[first] == '0' && at > first + 1) return false;
+  if (at < text.size() && text[at] == '.') {
+    ++at;
+    if (!digits()) return false;
+  }
+  if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
+    ++at;
+    if (at < text.size() && (text[at] == '-' || text[at] == '+')) ++at;
+    if (!digits()) return false;
+  }
+  constexpr std::size_t kLongest = 300;  // longer ones are texts, which tell what is wrong with them
+  return at == text.size() && at < kLongest;
+}
+
+}  // namespace
 
 std::string toml_string(std::string_view text) {
   std::string out = "\"";
@@ -27,6 +55,19 @@ std::string toml_key(std::string_view key) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
   return bare ? std::string(key) : toml_string(key);
+}
+
+std::string toml_value(const std::string& value) {
+  if (is_toml_number(value) || value == "true" || value == "false") return value;
+  if (value.front() == '[' || value.front() == '{') {
+    try {
+      parse_document("value = " + value, {});
+      return value;
+    } catch (const ReadError&) {
+      return toml_string(value);
+    }
+  }
+  return toml_string(value);
 }
 
 std::size_t end_of_string(std::string_view text, std::size_t begin) {

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <oblique/diagram/diagram_edit.h>
 #include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/edit/diagram_edit.h>
 #include <oblique/draw/picture/svg.h>
 #include <oblique/draw/schematic/panel.h>
 

@@ -7,7 +7,7 @@
 
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/diagram.h>
-#include <oblique/diagram/diagram_edit.h>
+#include <oblique/diagram/edit/written_wires.h>
 #include <oblique/draw/picture/picture.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
 

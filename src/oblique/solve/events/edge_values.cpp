@@ -42,35 +42,35 @@ std::vector<double> EdgeValues::sides(const Place& at) {
 }
 
 bool EdgeValues::complete_derivatives(double t, const double* x, std::span<double> dxdt) {
-  if (!misses_any(dxdt)) return false;
-  fill(Of::values, {t, {x, x + program_.n_states()}}, dxdt,
-       [&](const Place& at) { return program_.derivatives(at.t, at.x.data(), dxdt.data(), workspace_); });
-  return true;
+  return complete(Of::values, t, x, dxdt, [&](const Place& at) {
+    return program_.derivatives(at.t, at.x.data(), dxdt.data(), workspace_);
+  });
 }
 
 bool EdgeValues::complete_signals(double t, const double* x, std::span<double> signals) {
-  if (!misses_any(signals)) return false;
-  fill(Of::values, {t, {x, x + program_.n_states()}}, signals, [&](const Place& at) {
+  return complete(Of::values, t, x, signals, [&](const Place& at) {
     return program_.signals(at.t, at.x.data(), signals.data(), workspace_).has_value();
   });
-  return true;
 }
 
 bool EdgeValues::complete_jacobian(double t, const double* x, std::span<double> jacobian) {
-  if (!misses_any(jacobian)) return false;
-  fill(Of::jacobian, {t, {x, x + program_.n_states()}}, jacobian,
-       [&](const Place& at) { return program_.jacobian(at.t, at.x.data(), jacobian.data(), workspace_); });
-  return true;
+  return complete(Of::jacobian, t, x, jacobian, [&](const Place& at) {
+    return program_.jacobian(at.t, at.x.data(), jacobian.data(), workspace_);
+  });
 }
 
 /// `evaluate` writes `values`, and has written those that are to be filled in.
-void EdgeValues::fill(Of what, const Place& at, std::span<double> values, const Evaluate& evaluate) {
+template <class Function>
+bool EdgeValues::complete(Of what, double t, const double* x, std::span<double> values,
+                          const Function& evaluate) {
+  if (!misses_any(values)) return false;
   const std::vector<double> there(values.begin(), values.end());
   Missing missing;
-  const bool found = find(what, at, values, evaluate, missing);
+  const bool found = find(what, {t, {x, x + program_.n_states()}}, values, evaluate, missing);
   std::copy(there.begin(), there.end(), values.begin());
   for (std::size_t k = 0; found && k < missing.which.size(); ++k)
     values[missing.which[k]] = missing.values[k];
+  return true;
 }
 
 bool EdgeValues::find(Of what, const Place& at, std::span<const double> values, const Evaluate& evaluate,

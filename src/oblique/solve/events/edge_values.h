@@ -64,7 +64,8 @@ class EdgeValues {
     return !program_.switches().empty() &&
            !std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
   }
-  void fill(Of what, const Place& at, std::span<double> values, const Evaluate& evaluate);
+  template <class Function>
+  bool complete(Of what, double t, const double* x, std::span<double> values, const Function& evaluate);
   bool find(Of what, const Place& at, std::span<const double> values, const Evaluate& evaluate,
             Missing& missing);
   bool find_on_way(Of what, const Place& from, const Place& to, std::span<const double> values,

@@ -220,18 +220,18 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
   return std::nullopt;
 }
 
-/// Takes its slack from every event function that is beyond the errors of the states.
+/// Notes on which side every event function lies that may turn over, and takes its slack from those that are
+/// beyond the errors of the states.
 void EventSearch::leave_behind(Sample& at) {
   nearest_ = kInfinity;
   for (std::size_t s = 0; s < at.event_functions.size(); ++s) {
     const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
-    const bool watched = at.crossed[s] != -kInfinity;
-    if (watched) nearest_ = std::min(nearest_, std::abs(at.event_functions[s]));
-    thresholds_.note_side(s,
-                          !watched ? 0
-                          : closed ? -at.event_functions[s]
-                                   : at.event_functions[s],
-                          at.roundings[s], at.time);
+    double against = 0;
+    if (at.crossed[s] != -kInfinity) {
+      against = closed ? -at.event_functions[s] : at.event_functions[s];
+      nearest_ = std::min(nearest_, std::abs(against));
+    }
+    thresholds_.note_side(s, against, at.roundings[s], at.time);
     if (const auto less = thresholds_.leave_behind(s, at.event_functions[s], at.roundings[s]))
       at.crossed[s] += *less;
   }

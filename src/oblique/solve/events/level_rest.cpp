@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <oblique/solve/events/position_limits.h>
 #include <oblique/solve/events/self_consistent.h>
@@ -16,10 +15,8 @@ LevelRest::LevelRest(const network::Program& program, network::Workspace& worksp
       workspace_(workspace),
       thresholds_(thresholds),
       span_(span),
-      event_functions_(program.switches().size()),
-      rates_(program.switches().size()),
-      derivatives_(program.n_states()),
-      moved_(program.n_states()) {}
+      probe_(program, workspace, span),
+      event_functions_(program.switches().size()) {}
 
 bool LevelRest::is_third_position(std::uint32_t unit) const {
   const network::SwitchStructure& structure = program_.switch_structure();
@@ -61,23 +58,20 @@ bool LevelRest::stays(std::uint32_t unit, const std::vector<std::uint32_t>& besi
   const std::uint32_t first = structure.members[unit].front();
   const auto here = place_others(program_, workspace_, thresholds_, placed_, t, x, event_functions_);
   if (!here || event_functions_[first] != event_function) return false;
-  here->derivatives(derivatives_.data());
-  here->event_function_rates(derivatives_.data(), rates_.data());
-  fastest = fastest_of(derivatives_, std::max(fastest, std::numeric_limits<double>::min()));
-  if (!stands_still(first, rates_[first])) return false;
+  probe_.begin(*here, fastest);
+  if (!stands_still(first, probe_.rate(first))) return false;
+  std::vector<std::uint32_t> switches{first};
   for (const std::uint32_t other : beside) {
-    const std::uint32_t s = structure.members[other].front();
-    const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
-    const bool moves = std::abs(rates_[s]) > kRounding * fastest && leaves_rounding(rates_[s], span_);
-    if (other != unit && moves && (rates_[s] > 0) != closed) return false;
+    if (other != unit) switches.push_back(structure.members[other].front());
   }
-  const double step = std::min(kProbe / fastest, kProbe * span_);
-  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * derivatives_[i];
-  const auto later = program_.event_functions(t + step, moved_.data(), event_functions_.data(), workspace_);
-  if (!later) return false;
-  later->derivatives(derivatives_.data());
-  later->event_function_rates(derivatives_.data(), rates_.data());
-  return stands_still(first, rates_[first]);
+  if (!probe_.look(switches, t, x)) return false;
+  return std::all_of(switches.begin(), switches.end(), [&](std::uint32_t s) {
+    const ProbedRate probed = probe_[s];
+    if (s == first) return stands_still(s, probed.later);
+    const RateScale alone{std::abs(probed.rate), std::abs(probed.later), probe_.fastest(), span_};
+    const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
+    return !leaves_rounding(probed.rate, span_) || !is_decisive(probed, alone) || (probed.rate > 0) == closed;
+  });
 }
 
 }  // namespace oblique::solve

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/rate_probe.h>
 #include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
@@ -40,8 +41,9 @@ class LevelRest {
   network::Workspace& workspace_;
   const Thresholds& thresholds_;
   double span_;
+  RateProbe probe_;
   std::vector<bool> placed_;
-  std::vector<double> event_functions_, rates_, derivatives_, moved_;
+  std::vector<double> event_functions_;
 };
 
 }  // namespace oblique::solve

@@ -15,7 +15,6 @@ inline constexpr double kProbe = 1e-6;
 /// A rate below this part of the largest among the trials is none.
 inline constexpr double kNoRate = 1e-9;
 inline constexpr double kNoLaterRate = 1e-6;
-inline constexpr double kAboutToTurn = 0.05;  ///< see `is_about_to_turn`
 /// Rounding of a rate, of the fastest state's; and of an event function [machine unit].
 inline constexpr double kRounding = 1e-13;
 
@@ -23,10 +22,9 @@ inline constexpr double kRounding = 1e-13;
 /// its change, and turns before it has led out of the rounding of the event function. The quick answer of a
 /// fast decay changes a rate as much and more, but only after it has led there.
 inline bool is_about_to_turn(double rate, double later, double step) {
-  constexpr double kOfRounding = 10;
+  constexpr double kSmall = 0.05, kOfRounding = 10;
   const double change = std::abs(later - rate);
-  return std::abs(rate) <= kAboutToTurn * change &&
-         rate * rate * step <= 2 * kOfRounding * kRounding * change;
+  return std::abs(rate) <= kSmall * change && rate * rate * step <= 2 * kOfRounding * kRounding * change;
 }
 
 /// What is no jump of an event function with the position of another unit, where units lie as far as `off`

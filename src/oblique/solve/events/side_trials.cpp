@@ -15,15 +15,7 @@
 namespace oblique::solve {
 namespace {
 
-constexpr double kRoundingOfState = 1e-15;  ///< of it
-/// Of the time in which what is fast answers: as long as this it goes straight on.
-constexpr double kStraight = 0.1;
-
 constexpr std::size_t kMostTrials = 3;  ///< of bends and others that follow each other
-
-int sign_of(double value) {
-  return value > 0 ? 1 : value < 0 ? -1 : 0;
-}
 
 }  // namespace
 
@@ -33,10 +25,8 @@ SideTrials::SideTrials(const network::Program& program, network::Workspace& work
       workspace_(workspace),
       thresholds_(thresholds),
       span_(span),
-      event_functions_(program.switches().size()),
-      rates_(program.switches().size()),
-      derivatives_(program.n_states()),
-      moved_(program.n_states()) {}
+      probe_(program, workspace, span),
+      event_functions_(program.switches().size()) {}
 
 void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x) {
   units_ = std::move(units);
@@ -44,6 +34,7 @@ void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, s
   fastest_ = 0;
   trials_.clear();
   for (Combination sides = 0; sides < combinations(); ++sides) trials_.push_back(attempt(sides, bends, t, x));
+  find_scales();
   find_broken();
 }
 
@@ -83,12 +74,6 @@ double SideTrials::of_unit(const std::vector<double>& of_switches, std::size_t u
   return structure.opposite[s] ? -of_switches[s] : of_switches[s];
 }
 
-std::vector<double> SideTrials::of_units(const std::vector<double>& of_switches) const {
-  std::vector<double> values(units_.size());
-  for (std::size_t u = 0; u < values.size(); ++u) values[u] = of_unit(of_switches, u);
-  return values;
-}
-
 std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& bends, double t,
                                                      std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
@@ -126,55 +111,34 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
   return here;
 }
 
-/// What the rounding of the states makes of the rates of units at (t, x): much, where something fast is
-/// nearly in balance.
-std::vector<double> SideTrials::noise_of(const std::vector<double>& rates, double t,
-                                         std::span<const double> x) {
-  std::vector<double> moved_derivatives(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i)
-    moved_[i] = x[i] * (1 + (i % 2 == 0 ? 1 : -1) * kRoundingOfState);
-  const auto moved = program_.event_functions(t, moved_.data(), event_functions_.data(), workspace_);
-  if (!moved) return std::vector<double>(rates.size(), 0.0);
-  moved->derivatives(moved_derivatives.data());
-  moved->event_function_rates(moved_derivatives.data(), rates_.data());
-  std::vector<double> noise = of_units(rates_);
-  for (std::size_t u = 0; u < noise.size(); ++u)
-    noise[u] = std::isfinite(noise[u]) ? std::abs(noise[u] - rates[u]) : 0;
-  return noise;
-}
-
 std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& bends, double t,
                                                      std::span<const double> x) {
+  const network::SwitchStructure& structure = program_.switch_structure();
   const auto here = place(sides, bends, t, x);
   if (!here) return std::nullopt;
+  std::vector<std::uint32_t> switches;
+  for (const std::uint32_t unit : units_) switches.push_back(structure.members[unit].front());
+  probe_.begin(*here, 0);
+  fastest_ = std::max(fastest_, probe_.fastest());
+  if (!probe_.look(switches, t, x)) return std::nullopt;
   Trial trial;
-  trial.event_functions = of_units(event_functions_);
-  here->derivatives(derivatives_.data());
-  here->event_function_rates(derivatives_.data(), rates_.data());
-  trial.rates = of_units(rates_);
-  trial.noise = noise_of(trial.rates, t, x);
-  const double fastest = fastest_of(derivatives_, std::numeric_limits<double>::min());
-  fastest_ = std::max(fastest_, fastest);
-  trial.step = std::min(kProbe / fastest, kProbe * span_);
-  for (const double noise : trial.noise) {
-    if (noise > 0) trial.step = std::min(trial.step, kStraight * kRoundingOfState / noise);
+  for (const std::uint32_t s : switches) {
+    const double sign = structure.opposite[s] ? -1 : 1;
+    const ProbedRate probed = probe_[s];
+    trial.event_functions.push_back(sign * event_functions_[s]);
+    trial.rates.push_back({sign * probed.rate, sign * probed.later, probed.step, probed.noise});
   }
-  for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + trial.step * derivatives_[i];
-  const auto later =
-      program_.event_functions(t + trial.step, moved_.data(), event_functions_.data(), workspace_);
-  if (!later) return std::nullopt;
-  later->derivatives(derivatives_.data());
-  later->event_function_rates(derivatives_.data(), rates_.data());
-  trial.later = of_units(rates_);
   return trial;
 }
 
-double SideTrials::largest_rate(std::size_t unit) const {
-  double largest = kRounding * fastest_;
+void SideTrials::find_scales() {
+  scales_.assign(units_.size(), {kRounding * fastest_, 0, fastest_, span_});
   for (const auto& trial : trials_) {
-    if (trial) largest = std::max(largest, std::abs(trial->rates[unit]));
+    for (std::size_t u = 0; trial && u < units_.size(); ++u) {
+      scales_[u].rate = std::max(scales_[u].rate, std::abs(trial->rates[u].rate));
+      scales_[u].later = std::max(scales_[u].later, std::abs(trial->rates[u].later));
+    }
   }
-  return largest;
 }
 
 /// To which side the event function of a unit goes in a trial: 1, −1, or 0 where it stays at zero.
@@ -182,21 +146,10 @@ int SideTrials::direction(Combination sides, std::size_t unit) const {
   const auto& trial = trials_[sides];
   if (!trial) return 0;
   const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
-  if (std::abs(trial->event_functions[unit]) > std::max(thresholds_[s], SlidingMode::drift()))
-    return sign_of(trial->event_functions[unit]);
-  const double rate = trial->rates[unit], later = trial->later[unit], noise = trial->noise[unit];
-  if (!leaves_rounding(rate, span_) && !leaves_rounding(later, span_)) return 0;
-  if (std::abs(rate) > noise && std::abs(rate) > kNoRate * largest_rate(unit) &&
-      std::abs(rate) > kRounding * fastest_ && !is_about_to_turn(rate, later, trial->step))
-    return sign_of(rate);
-  double largest_later = 0;
-  for (const auto& other : trials_) {
-    if (other) largest_later = std::max(largest_later, std::abs(other->later[unit]));
-  }
-  const bool moves = std::abs(later) > noise && std::abs(later) > kNoLaterRate * largest_later &&
-                     std::abs(later) > 10 * kRounding * fastest_ &&
-                     largest_later > std::numeric_limits<double>::min();
-  return moves ? sign_of(later) : 0;
+  const double event_function = trial->event_functions[unit];
+  if (std::abs(event_function) > std::max(thresholds_[s], SlidingMode::drift()))
+    return event_function > 0 ? 1 : -1;
+  return side_of(trial->rates[unit], scales_[unit]);
 }
 
 /// Whether the equations jump with a unit.

@@ -9,6 +9,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/bends.h>
 #include <oblique/solve/events/combinations.h>
+#include <oblique/solve/events/rate_probe.h>
 #include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
@@ -54,7 +55,7 @@ class SideTrials {
   bool is_independent(Combination units) const;
 
   /// The largest rate of the event function of a unit in any trial, at least rounding.
-  double largest_rate(std::size_t unit) const;
+  double largest_rate(std::size_t unit) const { return scales_[unit].rate; }
   /// Of all dx/dt in the trials.
   double fastest() const { return fastest_; }
   /// Of values of switches, that of a unit: above zero on its upper side.
@@ -63,18 +64,16 @@ class SideTrials {
  private:
   /// What one combination of sides leads to.
   struct Trial {
-    std::vector<double> event_functions, rates, later;  ///< of each unit; `later` is the rate a moment on
-    std::vector<double> noise;                          ///< what rounding of the states makes of the rates
-    double step = 0;                                    ///< that moment [s]
+    std::vector<double> event_functions;  ///< of each unit, as their rates
+    std::vector<ProbedRate> rates;
   };
 
   std::optional<Trial> attempt(Combination sides, Bends& bends, double t, std::span<const double> x);
-  std::vector<double> noise_of(const std::vector<double>& rates, double t, std::span<const double> x);
+  void find_scales();
   void find_broken();
   double largest_jump(std::size_t unit, std::size_t with) const;
   int direction(Combination sides, std::size_t unit) const;
   bool jumps(std::size_t unit) const;
-  std::vector<double> of_units(const std::vector<double>& of_switches) const;
 
   const network::Program& program_;
   network::Workspace& workspace_;
@@ -85,7 +84,9 @@ class SideTrials {
   std::vector<double> before_;                ///< discrete states
   std::vector<std::optional<Trial>> trials_;  ///< of each combination; nothing where it has no values
   double fastest_ = 0;
-  std::vector<double> event_functions_, rates_, derivatives_, moved_;
+  std::vector<RateScale> scales_;  ///< of each unit, in all trials
+  RateProbe probe_;
+  std::vector<double> event_functions_;
 };
 
 }  // namespace oblique::solve

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/position_limits.h>
+#include <oblique/solve/events/position_effects.h>
 #include <oblique/solve/events/self_consistent.h>
 
 namespace oblique::solve {
@@ -41,8 +41,6 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
       log_(log),
       span_(span),
       positions_(program, workspace, slide, event_functions.thresholds(), span),
-      level_rest_(program, workspace, event_functions.thresholds(), span),
-      resting_(program, workspace, event_functions.thresholds(), log),
       chained_(known_follow_from_others()),
       stays_(program.switches().size(), false),
       decided_(program.switch_structure().members.size(), false),
@@ -50,9 +48,7 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
       before_instant_(program.switches().size()),
       rates_before_(program.switches().size()),
       derivatives_(program.n_states()),
-      unrest_(program.switches().size()),
-      told_hidden_(decided_.size(), false),
-      cuts_(program_.switches().size(), 0) {}
+      unrest_(program.switches().size()) {}
 
 /// Then the time at which one comes tells nothing of where it goes before the others are known.
 bool SwitchSettling::known_follow_from_others() const {
@@ -279,47 +275,15 @@ void SwitchSettling::tell_of_open(double t, std::span<const double> x) {
   if (open) log_.warn_of_choice({*open}, workspace_, t);
 }
 
-/// Whether some value that `evaluate` gives is another with a unit on its other side.
-template <class Evaluate>
-bool SwitchSettling::differs(std::uint32_t unit, std::size_t n_values, const Evaluate& evaluate) const {
-  constexpr double kMuch = 1e-6;  // of 1 + the value
-  const std::vector<double> positions(workspace_.discrete_states().begin(),
-                                      workspace_.discrete_states().end());
-  std::vector<double> here(n_values), there(n_values);
-  const bool known = evaluate(here);
-  for (const std::uint32_t s : program_.switch_structure().members[unit])
-    workspace_.set_discrete_state(program_.switches()[s].discrete_state, 1 - position(s));
-  const bool known_there = evaluate(there);
-  workspace_.load_discrete_states(positions);
-  if (!known || !known_there) return false;
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    if (std::abs(there[i] - here[i]) > kMuch * (1 + std::abs(here[i]))) return true;
-  }
-  return false;
-}
-
-/// Whether some signal is another with the unit on its other side.
-bool SwitchSettling::matters(std::uint32_t unit, double t, std::span<const double> x) const {
-  return differs(unit, program_.n_signals(), [&](std::vector<double>& signals) {
-    return program_.signals(t, x.data(), signals.data(), workspace_).has_value();
-  });
-}
-
-/// Whether some rate of the states is.
-bool SwitchSettling::moves_states(std::uint32_t unit, double t, std::span<const double> x) const {
-  return differs(unit, x.size(), [&](std::vector<double>& rates) {
-    return program_.derivatives(t, x.data(), rates.data(), workspace_);
-  });
-}
-
 /// What the last choice of positions tells besides.
 void SwitchSettling::note_choice(double t, std::span<const double> x) {
   for (const std::uint32_t unit : positions_.resting()) {
     for (const std::uint32_t member : program_.switch_structure().members[unit]) stays_[member] = true;
-    if (has_unit(slid_, unit) && matters(unit, t, x)) log_.warn_of_halt(unit, t);
+    if (has_unit(slid_, unit) && changes_signals(program_, workspace_, unit, t, x))
+      log_.warn_of_halt(unit, t);
   }
   for (const std::uint32_t unit : positions_.stopped()) {
-    keep_at_level(unit);
+    event_functions_.keep_at_level(unit);
     log_.warn_of_stop(unit, t);
   }
   for (const std::uint32_t unit : positions_.undecided()) {
@@ -398,65 +362,6 @@ void SwitchSettling::begin_after_events(bool set_states, bool jumped) {
   event_functions_.thresholds().take_all_slack();
 }
 
-/// Whether the event function of a unit, evaluated last, stays where it is by its rate.
-bool SwitchSettling::rests(std::uint32_t unit) {
-  const std::uint32_t s = program_.switch_structure().members[unit].front();
-  std::vector<double> rates(event_functions_.size());
-  event_functions_.here().derivatives(derivatives_.data());
-  event_functions_.here().event_function_rates(derivatives_.data(), rates.data());
-  return level_rest_.stands_still(s, rates[s]);
-}
-
-/// Whether a comparison of a unit holds which is where it was when this instant began, within what its time
-/// is known to of its level.
-bool SwitchSettling::holds_at_level(std::uint32_t unit) const {
-  const auto& members = program_.switch_structure().members[unit];
-  const std::uint32_t s = members.front();
-  if (event_functions_.is_known(s) || slide_.holds(s) || slide_.follows(s)) return false;
-  const bool holds = std::any_of(members.begin(), members.end(), [&](std::uint32_t m) {
-    return position(m) == 1 && program_.switches()[m].turning == network::Turning::jumps;
-  });
-  return holds && event_functions_[s] == before_instant_[s] &&
-         std::abs(event_functions_[s]) <= SlidingMode::drift();
-}
-
-/// What a unit is found off its level, as its time is found, counts as nothing until it has left that behind.
-void SwitchSettling::keep_at_level(std::uint32_t unit) {
-  for (const std::uint32_t s : program_.switch_structure().members[unit]) {
-    const double off = 2 * std::abs(event_functions_[s]);
-    if (off > event_functions_.thresholds()[s]) event_functions_.thresholds().widen(s, off);
-  }
-}
-
-bool SwitchSettling::lower_resting(const Units& came, double t, std::span<const double> x) {
-  for (const std::uint32_t unit : came) {
-    if (!holds_at_level(unit)) continue;
-    event_functions_.evaluate(t, x, announced_);
-    if (!rests(unit)) continue;
-    const auto& members = program_.switch_structure().members[unit];
-    std::vector<double> turned;
-    for (const std::uint32_t m : members) turned.push_back(position(m));
-    const bool lowered = level_rest_.take(unit, {}, fastest_of(derivatives_, 0), t, x);
-    if (lowered) {
-      resting_.add(unit, std::move(turned), t, x);
-      keep_at_level(unit);
-    }
-    event_functions_.evaluate(t, x, announced_);
-    if (lowered) return true;
-  }
-  return false;
-}
-
-void SwitchSettling::look_at_resting(double t, std::span<const double> x) {
-  if (!resting_.any()) return;
-  for (const std::uint32_t unit : resting_.units()) {
-    const std::uint32_t s = program_.switch_structure().members[unit].front();
-    if (std::abs(event_functions_[s]) > SlidingMode::drift() || !rests(unit)) resting_.remove(unit);
-  }
-  resting_.look(t, x);
-  event_functions_.evaluate(t, x, announced_);
-}
-
 void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
   slid_.clear();
   for (const std::uint32_t unit : slid) {
@@ -491,50 +396,6 @@ void SwitchSettling::keep_positions_within_errors() {
     if (event_functions_.is_known(s) || restored_[s] || !(std::abs(event_functions_[s]) <= error)) continue;
     event_functions_.thresholds().widen(s, error);
     kept_[program_.switch_structure().unit[s]] = true;
-  }
-}
-
-void SwitchSettling::allow_wrong_sides() {
-  Thresholds& thresholds = event_functions_.thresholds();
-  for (std::size_t s = 0; s < event_functions_.size(); ++s) {
-    if (event_functions_.is_known(s) || slide_.holds(s) || slide_.follows(s)) continue;
-    const double wrong = event_functions_.against(s);
-    if (wrong > thresholds[s]) thresholds.widen(s, 2 * wrong);
-  }
-}
-
-bool SwitchSettling::limit_slack() {
-  // What turns over and back by rounding would be cut and turn at every instant that a number can tell.
-  constexpr int kMostCuts = 4;  // in a step
-  Thresholds& thresholds = event_functions_.thresholds();
-  const EventFunctionErrors& errors = event_functions_.weigh_errors();
-  bool any = false;
-  for (std::size_t s = 0; s < event_functions_.size(); ++s) {
-    // One that was announced and did not turn over would be announced again at once.
-    if (!thresholds.let_since(s) || unrest_[s].touches || cuts_[s] >= kMostCuts) continue;
-    thresholds.limit_slack(s, errors[s]);
-    if (event_functions_.against(s) <= thresholds.along_solution(s, thresholds.rounding(s))) continue;
-    ++cuts_[s];
-    any = true;
-  }
-  return any;
-}
-
-void SwitchSettling::tell_of_hidden(double t, std::span<const double> x) {
-  constexpr double kLong = 1e-3;  // of the run: what is late by less shows in no output
-  const Thresholds& thresholds = event_functions_.thresholds();
-  const EventFunctionErrors& errors = event_functions_.weigh_errors();
-  const std::vector<std::uint32_t> resting = resting_.units();  // at their level, of which `resting_` tells
-  for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
-    const std::uint32_t unit = program_.switch_structure().unit[s];
-    const auto since = thresholds.let_since(s);
-    // What has not turned over yet, or was looked at and let touch, is a decay, which stays on its side.
-    if (unrest_[s].last == 0 || unrest_[s].touches) continue;
-    if (std::find(resting.begin(), resting.end(), unit) != resting.end()) continue;
-    if (!since || told_hidden_[unit] || !(t - *since > kLong * span_)) continue;
-    if (!matters(unit, t, x) && !moves_states(unit, t, x)) continue;
-    told_hidden_[unit] = true;
-    log_.warn_of_hidden(s, position(s) == 1, *since, t, errors[s]);
   }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,9 +9,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/event_pace.h>
-#include <oblique/solve/events/level_rest.h>
 #include <oblique/solve/events/positions.h>
-#include <oblique/solve/events/resting_comparisons.h>
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/readings/event_functions.h>
 
@@ -42,18 +39,8 @@ class SwitchSettling {
   void begin_after_events(bool set_states, bool jumped);
   /// All switches to a fixed point; true where any turned over. Throws SolveError where there is none.
   bool settle(double t, std::span<const double> x);
-  /// Of the units that `came` to their levels at this instant, where all is settled and no event is due: puts
-  /// the first that rests there, as its turn and what followed have left it, where none of its comparisons
-  /// holds. True where there was one: events may follow.
-  bool lower_resting(const std::vector<std::uint32_t>& came, double t, std::span<const double> x);
-  /// Looks at (t, x), where no event has been served yet that is due, whether it makes a difference that the
-  /// comparisons do not hold which were put so.
-  void look_at_resting(double t, std::span<const double> x);
   /// The instant is settled; before it these units slid.
   void end(const std::vector<std::uint32_t>& slid);
-  /// Where an event function, evaluated after that, still lies on the wrong side, it goes back at once: it
-  /// stays there for a moment, which is no event of its own.
-  void allow_wrong_sides();
   /// A switch that was announced has not turned over: its event function may touch zero within the errors of
   /// the states until it has left these behind.
   void let_touch(std::size_t s);
@@ -64,18 +51,12 @@ class SwitchSettling {
   /// stay where they are until they have left these behind. On which side they lie, rounding decides.
   void keep_positions_within_errors();
 
-  /// Of the event functions, evaluated at (t, x), that lie on the wrong side because their slack lets them:
-  /// takes what is more than their errors there. Whether any lies there by more than that.
-  bool limit_slack();
-  /// Another step has been taken.
-  void take_step() { std::fill(cuts_.begin(), cuts_.end(), 0); }
-  /// Tells of those that have lain there for long, where the other position would make something else.
-  void tell_of_hidden(double t, std::span<const double> x);
-
   /// Whether an event function, at zero, was found to stay there.
   bool stays(std::size_t s) const { return stays_[s]; }
   /// When a switch turned over last [s]; 0 where it has not.
   double last_turn(std::size_t s) const { return unrest_[s].last; }
+  /// Whether a switch has been let touch since.
+  bool touches(std::size_t s) const { return unrest_[s].touches; }
 
  private:
   using Units = std::vector<std::uint32_t>;
@@ -96,15 +77,8 @@ class SwitchSettling {
   void turn_in_order(double t, std::span<const double> x);
   void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
   bool is_at_level(std::uint32_t unit) const;
-  void keep_at_level(std::uint32_t unit);
-  bool rests(std::uint32_t unit);
-  bool holds_at_level(std::uint32_t unit) const;
   void decide(Units units, double t, std::span<const double> x);
   bool choose_restless(const Units& switches, double t, std::span<const double> x);
-  template <class Evaluate>
-  bool differs(std::uint32_t unit, std::size_t n_values, const Evaluate& evaluate) const;
-  bool matters(std::uint32_t unit, double t, std::span<const double> x) const;
-  bool moves_states(std::uint32_t unit, double t, std::span<const double> x) const;
   void note_choice(double t, std::span<const double> x);
   SolveError no_position(std::uint32_t s, double t) const;
 
@@ -116,8 +90,6 @@ class SwitchSettling {
   EventLog& log_;
   double span_;
   Positions positions_;
-  LevelRest level_rest_;
-  RestingComparisons resting_;
   bool chained_;  ///< whether a known switch depends on the position of another
 
   std::vector<bool> stays_;    ///< see `stays`
@@ -143,8 +115,6 @@ class SwitchSettling {
     long beyond = 0;                 ///< turns after that, within the errors of the states
   };
   std::vector<Unrest> unrest_;
-  std::vector<bool> told_hidden_;  ///< of each unit
-  std::vector<int> cuts_;          ///< of the slack of each switch, in this step
 };
 
 }  // namespace oblique::solve

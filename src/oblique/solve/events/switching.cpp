@@ -29,6 +29,8 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
       event_functions_(program, workspace, tolerance, absolute_tolerance, file),
       location_(program, workspace, slide_, event_functions_, span, file),
       settling_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
+      resting_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
+      wrong_sides_(program, workspace, slide_, settling_, event_functions_, log_, span),
       actions_(program, workspace, event_functions_, slide_, settling_, log_, span, file),
       faint_turns_(program, workspace, span),
       loop_jumps_(program, workspace, event_functions_.thresholds()) {
@@ -155,25 +157,22 @@ void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<double> before_turns = faint.empty() ? std::vector<double>() : readings(t, x);
   if (before_turns.empty()) faint.clear();
   actions_.begin_instant();
-  std::vector<std::uint32_t> came;  // to their levels
-  for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
-    if (location_.announced()[s]) came.push_back(program_.switch_structure().unit[s]);
-  }
+  resting_.begin_instant();
   for (int round = 0;; ++round) {
     settle_switches(t, x);
     if (round == 0) {
       record_turns(before, t);
       actions_.note_turns(before);
     }
-    settling_.look_at_resting(t, x);
-    if (!serve_events(t, x, false) && !settling_.lower_resting(came, t, x)) break;
+    resting_.look(t, x);
+    if (!serve_events(t, x, false) && !resting_.lower(t, x)) break;
     if (round > kMostRounds) throw log_.endless("events set each other off", t);
   }
   log_.record_slides(slid, doubts, slide_, t);
   settling_.end(slid);
   location_.withdraw_all();
   event_functions_.evaluate(t, x, location_.announced());
-  settling_.allow_wrong_sides();
+  wrong_sides_.allow();
   if (faint.empty()) return;
   const std::vector<double> after_turns = readings(t, x);
   if (!after_turns.empty()) faint_turns_.keep(std::move(faint), before_turns, after_turns);
@@ -233,8 +232,8 @@ bool Switching::look_at_hidden(double t, const Interpolant& solution) {
   std::vector<double> x(program_.n_states());
   solution.states_at(t, x);
   event_functions_.evaluate(t, x, location_.announced());
-  const bool overlooked = event_functions_.steps_damp() && settling_.limit_slack();
-  if (!overlooked) settling_.tell_of_hidden(t, x);
+  const bool overlooked = event_functions_.steps_damp() && wrong_sides_.limit_slack();
+  if (!overlooked) wrong_sides_.tell(resting_, t, x);
   event_functions_.evaluate(t, x, location_.announced());  // back to the solutions of the loops
   return overlooked;
 }

@@ -16,8 +16,10 @@
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/events/faint_turns.h>
 #include <oblique/solve/events/loop_jumps.h>
+#include <oblique/solve/events/resting_comparisons.h>
 #include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/events/switch_settling.h>
+#include <oblique/solve/events/wrong_sides.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/interruption.h>
 #include <oblique/solve/readings/event_functions.h>
@@ -101,7 +103,7 @@ class Switching {
   /// A step of this length [s] has led to where events are searched for next; it damps what is fast, or is 0.
   void take_step(double length) {
     event_functions_.take_steps(slide_.active() ? 0 : length);
-    settling_.take_step();
+    wrong_sides_.take_step();
   }
 
   /// The solution within a step that ends at t, by which to look at it: with its errors damped where an event
@@ -158,6 +160,8 @@ class Switching {
   EventFunctions event_functions_;
   EventLocation location_;
   SwitchSettling settling_;
+  RestingComparisons resting_;
+  WrongSides wrong_sides_;
   EventActions actions_;
   FaintTurns faint_turns_;
   LoopJumps loop_jumps_;

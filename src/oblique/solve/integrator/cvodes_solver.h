@@ -11,8 +11,9 @@
 
 namespace oblique::solve {
 
-/// CVODES with variable-order BDF (or Adams), Newton's method, and KLU on the analytic Jacobian. Owns all of
-/// SUNDIALS' memory.
+struct CvodesMemory;
+
+/// CVODES with variable-order BDF (or Adams), Newton's method, and KLU on the analytic Jacobian.
 class CvodesSolver final : public Solver {
  public:
   /// Starts at (t0, x0) and will not pass `end`, which comes after `length`. `system` must outlive the
@@ -48,8 +49,7 @@ class CvodesSolver final : public Solver {
   int last_order() const;
 
  private:
-  struct Handles;
-  std::unique_ptr<Handles> handles_;
+  std::unique_ptr<CvodesMemory> memory_;
 };
 
 }  // namespace oblique::solve

@@ -50,8 +50,7 @@ class Integration {
   Integration(const Parts& parts, MethodChoice method, const Refinement& refinement, double t);
 
   /// Takes a step from t into the segments; t is then where it ends. False where none came of it: it is to be
-  /// tried again, from the t that is left. Throws SolverFailure, SolveError and
-  /// Interrupted.
+  /// tried again, from the t that is left. Throws SolverFailure, SolveError and Interrupted.
   bool take_step(double& t);
   /// Goes on from t, where a step has ended or the segment with it.
   void end_step(Segments::Passed passed, double t);

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/solve/readings/error_signs.h>
+
 namespace oblique::solve {
 namespace {
 
@@ -60,17 +62,13 @@ void LostOutputs::begin_segment(double t, std::span<const double> x) {
 }
 
 void LostOutputs::look(double t, std::span<const double> x) {
-  constexpr std::uint64_t kTrials = 4;
   bool any_lost = false;
   if (!outputs_(t, x.data(), values_.data())) return;
   for (std::size_t k = 0; k < values_.size(); ++k) sizes_[k] = std::max(sizes_[k], std::abs(values_[k]));
   off_states_.resize(x.size());
-  for (std::uint64_t trial = 1; trial <= kTrials; ++trial) {
-    std::uint64_t signs = 0x9E3779B97F4A7C15 * trial;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      off_states_[i] = x[i] + ((signs >> 63) != 0 ? 1 : -1) * error_of_state(i, x[i]);
-      signs = 6364136223846793005 * signs + 1442695040888963407;
-    }
+  for (std::uint64_t trial = 0; trial < ErrorSigns::kTrials; ++trial) {
+    ErrorSigns signs(trial);
+    for (std::size_t i = 0; i < x.size(); ++i) off_states_[i] = x[i] + signs.next() * error_of_state(i, x[i]);
     if (!outputs_(t, off_states_.data(), moved_.data())) continue;
     for (std::size_t k = 0; k < values_.size(); ++k) {
       if (losses_[k].time >= 0 || !is_lost(k)) continue;

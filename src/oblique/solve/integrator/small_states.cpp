@@ -23,7 +23,7 @@ constexpr double kMuchOfEventFunction = 1e-2;
 
 /// A diagram that nowhere comes to so much stands in small units; less than the second is nothing in any
 /// [machine unit].
-constexpr double kSmallUnit = 1e-4, kNothing = 1e-13;
+constexpr double kSmallUnit = 1e-4, kStaysZero = 1e-13;
 
 constexpr std::size_t kMostStates = 100;  ///< looked at one by one
 constexpr double kRounding = 1e-15, kAboveRounding = 10;
@@ -136,7 +136,7 @@ std::vector<SmallState> SmallStates::found() const {
   for (std::size_t i = 0; i < peaks_.size(); ++i) {
     if (!is_small(i) || peaks_[i] <= kAboveRounding * noise_[i]) continue;
     const auto reader = reader_of(i);
-    if (reader || (small_units && peaks_[i] > kNothing)) found.push_back({i, peaks_[i], reader.value_or(0)});
+    if (reader || (small_units && peaks_[i] > kStaysZero)) found.push_back({i, peaks_[i], reader.value_or(0)});
   }
   return found;
 }

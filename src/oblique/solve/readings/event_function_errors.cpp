@@ -6,7 +6,8 @@
 #include <utility>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/driving_states.h>
+#include <oblique/solve/readings/driving_states.h>
+#include <oblique/solve/readings/error_signs.h>
 
 namespace oblique::solve {
 
@@ -33,7 +34,6 @@ double EventFunctionErrors::change(double rate, double still) const {
 
 void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const double> states,
                                 ErrorDamping* damping) {
-  constexpr std::uint64_t kTrials = 4;
   constexpr double kErrorOfClock = 1e-13;  // it is a straight line to any method
   std::vector<bool> clocks(program_.n_states(), false);
   for (std::size_t c = 0; c < program_.clocks(); ++c) clocks[program_.source_states()[c]] = true;
@@ -41,13 +41,12 @@ void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const
   here.event_function_rates(off.data(), still.data());
   std::fill(errors_.begin(), errors_.end(), 0.0);
   std::fill(undamped_.begin(), undamped_.end(), 0.0);
-  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
-    std::uint64_t signs = 0x9E3779B97F4A7C15 * (trial + 1);
+  for (std::uint64_t trial = 0; trial < ErrorSigns::kTrials; ++trial) {
+    ErrorSigns signs(trial);
     for (std::size_t i = 0; i < off.size(); ++i) {
       const double size = std::abs(states[i]);
       const double error = clocks[i] ? kErrorOfClock * (1 + size) : tolerance_ * size + error_of_state(i);
-      off[i] = trial == 0 || (signs >> 63) != 0 ? error : -error;
-      signs = 6364136223846793005 * signs + 1442695040888963407;
+      off[i] = trial == 0 ? error : signs.next() * error;
     }
     here.event_function_rates(off.data(), rates.data());
     for (std::size_t s = 0; s < errors_.size(); ++s)

@@ -50,6 +50,13 @@ double EventFunctions::against(std::size_t s) const {
   return workspace_.discrete_state(program_.switches()[s].discrete_state) == 1 ? -values_[s] : values_[s];
 }
 
+void EventFunctions::keep_at_level(std::uint32_t unit) {
+  for (const std::uint32_t s : program_.switch_structure().members[unit]) {
+    const double off = 2 * std::abs(values_[s]);
+    if (off > thresholds_[s]) thresholds_.widen(s, off);
+  }
+}
+
 /// Whether a switch is on the wrong side of its switching surface, or has not turned over though it was
 /// announced.
 bool EventFunctions::is_any_due(const Announced& announced) const {

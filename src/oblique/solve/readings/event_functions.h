@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -66,6 +67,10 @@ class EventFunctions {
   std::vector<std::size_t> states_behind(std::uint32_t s) const {
     return errors_.states_behind(s, here(), states_);
   }
+
+  /// What a unit of switches lies off its level, as its time was found, counts as nothing until it has left
+  /// that behind.
+  void keep_at_level(std::uint32_t unit);
 
   const Thresholds& thresholds() const { return thresholds_; }
   Thresholds& thresholds() { return thresholds_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/solve/events/driving_states.h>
+#include <oblique/solve/readings/driving_states.h>
 
 namespace oblique::solve {
 

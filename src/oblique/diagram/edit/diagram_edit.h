@@ -2,30 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <oblique/diagram/block_library.h>
 #include <oblique/diagram/diagram.h>
 
 namespace oblique::diagram {
-
-/// A wire of a block as its file has it.
-struct WrittenWire {
-  std::string port;                    ///< empty where the block's type is not known
-  std::size_t term = 0;                ///< which one of the port
-  std::string key;                     ///< of the setting
-  std::optional<std::size_t> element;  ///< of the setting's list; none where the wire stands alone
-  std::string text;                    ///< "-2*abc"
-  std::string signal;                  ///< "abc"; empty where the text names none or several
-  text::SourcePosition position;
-};
-
-/// The wires of a block, in the order of its ports; `definition` may be null.
-std::vector<WrittenWire> wires_of(const std::vector<text::Entry>& settings,
-                                  const BlockDefinition* definition);
 
 /// The text of a diagram under the hands of somebody who patches it: each change is one of the places that it
 /// concerns, all else in the file stays as it is. A file that is wrong can be edited as long as it is TOML.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/events/position_effects.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace oblique::solve {
+namespace {
+
+/// Whether some value that `evaluate` gives is another with the switches of a unit turned over.
+template <class Evaluate>
+bool changes(const network::Program& program, network::Workspace& workspace, std::uint32_t unit,
+             std::size_t n_values, const Evaluate& evaluate) {
+  const std::vector<double> positions(workspace.discrete_states().begin(), workspace.discrete_states().end());
+  std::vector<double> here(n_values), there(n_values);
+  const bool known = evaluate(here);
+  for (const std::uint32_t s : program.switch_structure().members[unit]) {
+    const std::uint32_t discrete_state = program.switches()[s].discrete_state;
+    workspace.set_discrete_state(discrete_state, 1 - workspace.discrete_state(discrete_state));
+  }
+  const bool known_there = evaluate(there);
+  workspace.load_discrete_states(positions);
+  return known && known_there && !std::equal(here.begin(), here.end(), there.begin(), [](double a, double b) {
+           return !differ(a, b);
+         });
+}
+
+}  // namespace
+
+bool changes_signals(const network::Program& program, network::Workspace& workspace, std::uint32_t unit,
+                     double t, std::span<const double> x) {
+  return changes(program, workspace, unit, program.n_signals(), [&](std::vector<double>& signals) {
+    return program.signals(t, x.data(), signals.data(), workspace).has_value();
+  });
+}
+
+bool changes_rates(const network::Program& program, network::Workspace& workspace, std::uint32_t unit,
+                   double t, std::span<const double> x) {
+  return changes(program, workspace, unit, x.size(), [&](std::vector<double>& rates) {
+    return program.derivatives(t, x.data(), rates.data(), workspace);
+  });
+}
+
+}  // namespace oblique::solve

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include <oblique/network/program/program.h>
+
+// What hangs on the position of a switch. Not installed.
+namespace oblique::solve {
+
+/// Whether two values differ by more than rounding and the errors of the states make of them.
+inline bool differ(double a, double b) {
+  constexpr double kMuch = 1e-6;  // of 1 + the value
+  return std::abs(a - b) > kMuch * (1 + std::abs(a));
+}
+
+/// Whether some signal at (t, x) is another with the switches of a unit turned over.
+bool changes_signals(const network::Program& program, network::Workspace& workspace, std::uint32_t unit,
+                     double t, std::span<const double> x);
+
+/// Whether some rate of the states is.
+bool changes_rates(const network::Program& program, network::Workspace& workspace, std::uint32_t unit,
+                   double t, std::span<const double> x);
+
+}  // namespace oblique::solve
