@@ -347,10 +347,15 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   std::vector<std::string> names;
   for (const FlatOutput& output : flat.outputs) names.push_back(output.name);
   if (std::find(names.begin(), names.end(), "t") != names.end()) {
-    diagnostics.add({{diagram.file, {}},
-                     "an output is called 't', which is the column of time",
-                     "another name",
-                     "name it in [outputs]"});
+    const auto is_t = [](const auto& named) { return named.name == "t"; };
+    const auto output = std::find_if(diagram.outputs.begin(), diagram.outputs.end(), is_t);
+    const auto block = std::find_if(diagram.blocks.begin(), diagram.blocks.end(), is_t);
+    const bool is_listed = output != diagram.outputs.end();
+    diagnostics.add({is_listed                       ? output->place
+                     : block != diagram.blocks.end() ? block->place
+                                                     : text::Place{diagram.file, {}},
+                     "an output is called 't', which is the column of time", "another name",
+                     is_listed ? "" : "name it in [outputs]"});
   }
   if (diagnostics.empty()) check_expected_outputs(diagram, names, diagnostics);
   check_settings(diagram, scope, diagnostics);
