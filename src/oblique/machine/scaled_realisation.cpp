@@ -151,7 +151,14 @@ class MachineScaling::State {
   }
 
   bool make_room(const ScaledRealisation& realised) {
-    const auto peaks = peaks_by_name(realised.diagram);
+    auto peaks = peaks_by_name(realised.diagram);
+    // What goes beyond the unit by an inverter's own error is the signal that it inverts.
+    const diagram::FlatDiagram flat = diagram::flatten(realised.diagram, library_);
+    for (const diagram::FlatBlock& block : flat.blocks) {
+      if (block.definition->role != diagram::Role::inverter || block.inputs.front().terms.empty()) continue;
+      double& inverted = peaks.at(flat.blocks[block.inputs.front().terms.front().signal.block].path);
+      inverted = std::max(inverted, peaks.at(block.path));
+    }
     bool more = false;
     for (std::size_t e = 0; e < realised.scales.size(); ++e) {
       const double peak = peaks.at(realised.scales[e].signal);
