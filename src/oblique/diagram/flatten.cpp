@@ -308,17 +308,16 @@ void check_settings(const Diagram& diagram, const Scope& scope, text::Diagnostic
     wiring::check_override_path(scope, question->answer, question->place, diagnostics);
 }
 
-}  // namespace
-
-FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
-                    const std::vector<ParameterOverride>& overrides) {
+/// Of elements that are as the machine `elements` has them.
+FlatDiagram flatten_on(const std::string& elements, const Diagram& diagram, const BlockLibrary& library,
+                       const std::vector<ParameterOverride>& overrides) {
   FlatDiagram flat;
   flat.file = diagram.file;
   text::Diagnostics diagnostics;
   wiring::Resolver resolver(library, diagnostics);
   const Scope scope = resolver.diagram(diagram);
   const wiring::Replacements replacements = wiring::resolve_overrides(scope, overrides, diagnostics);
-  wiring::MachineDefaults machine(diagram.machine.profile);
+  wiring::MachineDefaults machine(elements);
   const Layout layout(scope, machine, replacements, flat, diagnostics);
   choose_outputs(diagram, scope, layout, flat, diagnostics);
   for (const auto& [path, tolerance] : diagram.run.tolerances) {
@@ -361,6 +360,18 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   check_settings(diagram, scope, diagnostics);
   diagnostics.throw_if_any<DiagramError>();
   return flat;
+}
+
+}  // namespace
+
+FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
+                    const std::vector<ParameterOverride>& overrides) {
+  return flatten_on(diagram.machine.profile, diagram, library, overrides);
+}
+
+FlatDiagram flatten_on_ideal_elements(const Diagram& diagram, const BlockLibrary& library,
+                                      const std::vector<ParameterOverride>& overrides) {
+  return flatten_on("ideal", diagram, library, overrides);
 }
 
 }  // namespace oblique::diagram

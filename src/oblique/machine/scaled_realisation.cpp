@@ -25,11 +25,6 @@
 namespace oblique::machine {
 namespace {
 
-diagram::Diagram on_ideal_machine(diagram::Diagram diagram) {
-  diagram.machine.profile = "ideal";
-  return diagram;
-}
-
 /// The machine without any errors, so that a diagram written for it says all of its own.
 diagram::MachineProfile without_errors(diagram::MachineProfile machine) {
   machine.errors.clear();
@@ -101,7 +96,7 @@ class MachineScaling::State {
         elements_(element_library(library)),
         machine_(machine),
         time_(options.time) {
-    flat_ = diagram::flatten(on_ideal_machine(diagram), elements_);
+    flat_ = diagram::flatten_on_ideal_elements(diagram, elements_);
     const bool has_others = std::any_of(flat_.blocks.begin(), flat_.blocks.end(), [](const auto& block) {
       return block.definition->role == diagram::Role::other;
     });
@@ -109,13 +104,13 @@ class MachineScaling::State {
       functions_ = tabulate_functions(flat_, elements_, machine, signal_ranges(flat_, diagram.run),
                                       diagram.run.until, options.segments);
     }
-    prepare_modes(flat_, diagram::flatten(on_ideal_machine(diagram), library), elements_, machine);
+    prepare_modes(flat_, diagram::flatten_on_ideal_elements(diagram, library), elements_, machine);
     circuit_ = reduce(flat_, elements_, most_weight_of_one(machine));
     check_elements(circuit_, machine);
     const Realisation unscaled = write_elements(diagram, flat_, elements_, without_errors(machine), circuit_);
     const auto peaks = [&] {
       try {
-        return peaks_by_name(on_ideal_machine(unscaled.diagram));
+        return peaks_of(diagram::flatten_on_ideal_elements(unscaled.diagram, library_), diagram.run);
       } catch (const solve::SolveError& error) {
         if (functions_.empty()) throw;
         throw RealiseError(
