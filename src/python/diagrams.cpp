@@ -5,9 +5,11 @@
 
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/diagram_writer.h>
+#include <oblique/diagram/flatten.h>
 #include <oblique/draw/picture/svg.h>
 #include <oblique/draw/schematic/diagram_drawing.h>
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/report/diagram_check.h>
 #include <oblique/report/diagram_check_json.h>
 #include <oblique/report/diagram_check_text.h>
@@ -58,7 +60,9 @@ py::tuple rescaled(const DiagramModel& model) {
 
 py::list static_test(const DiagramModel& model, const Settings& settings) {
   const std::vector<solve::StaticReading> readings = unlocked([&](SignalWatch&) {
-    return solve::static_test(model.compiled(overrides_of(settings))->program, model.diagram().file);
+    const diagram::FlatDiagram ideal =
+        diagram::flatten_on_ideal_elements(model.diagram(), *model.library(), overrides_of(settings));
+    return solve::static_test(network::Program(network::assemble(ideal)), model.diagram().file);
   });
   py::list list;
   for (const solve::StaticReading& reading : readings)

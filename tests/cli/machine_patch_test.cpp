@@ -262,8 +262,8 @@ TEST_F(PatchForMachine, SaysHowFunctionGeneratorsAreSet) {
   EXPECT_THAT(outcome.err, HasSubstr("wrote made-functions.csv\n"));
   // The stop throws x back to −55.5 mm: it gets the factor 0.018 of two digits, by which 20 mm are 3.6 V.
   const std::string functions = text_of("made-functions.csv");
-  EXPECT_THAT(functions, StartsWith("element,signal,breakpoint [V],output [V],slope beyond,slope added\n"
-                                    "F1,stop,0.0000,0.0000,0.0000,\n"));
+  EXPECT_THAT(functions, StartsWith("element,signal,breakpoint [V],output [V],slope beyond,slope added,side\n"
+                                    "F1,stop,0.0000,0.0000,0.0000,,\n"));
   EXPECT_THAT(functions, HasSubstr("F1,stop,3.6000,0.0000,"));
   EXPECT_THAT(text_of("made.txt"), HasSubstr("\nfunction generators\n"));
 }

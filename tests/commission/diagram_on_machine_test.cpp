@@ -99,6 +99,56 @@ TEST(DiagramOnMachine, MakesRoomForTheErrorsOfTheMachine) {
   }
 }
 
+// Values in volts are those of the machine that the diagram is for, 10 V, wherever it is put: x′ = 0.3 t − x
+// from ½. With ideal elements what is left is the solver's 1e-8.
+TEST(DiagramOnMachine, TakesValuesInVoltsOfTheMachineThatTheDiagramIsFor) {
+  const diagram::Diagram diagram = diagram::parse_diagram(R"toml(format = "oblique-diagram/1"
+[machine]
+profile = "tr-10"
+inverting = false
+[run]
+until = 1
+[blocks]
+u = { type = "ramp", slope = "3 V/s" }
+x = { type = "integrator", in = ["-x", "u"], initial = "5 V", limit = "8 V" }
+[outputs]
+x = "x"
+)toml",
+                                                          "volts.toml");
+  // x = 0.5 e^(−t) + 0.3 (t − 1 + e^(−t))
+  const double end = 0.8 * std::exp(-1);
+  for (const char* const machine : {"tr-10", "rat-700"}) {
+    const DiagramOnMachine placed =
+        put_on_machine(diagram, shipped_blocks(), *diagram::find_machine(machine));
+    EXPECT_LT(placed.difference, 1e-7) << machine;
+    diagram::Diagram ideal = placed.made.diagram;
+    ideal.machine.profile = "ideal";
+    const solve::Trajectory run = solve::run(ideal, shipped_blocks()).trajectory;
+    EXPECT_NEAR(run.at(run.rows() - 1, 1), end, 1e-7) << machine;
+  }
+}
+
+// An amplifier that only inverts what stands at the machine unit goes beyond it by its own offset: there is
+// room for that too.
+TEST(DiagramOnMachine, MakesRoomForTheErrorsOfInverters) {
+  const DiagramOnMachine placed = put_on_machine(diagram::parse_diagram(R"toml(format = "oblique-diagram/1"
+[run]
+until = 3
+[blocks]
+x = { type = "integrator", in = ["-0.5*x", "0.01*k"], initial = 1 }
+y = { type = "integrator", in = ["x", "-y"] }
+c = { type = "comparator", in = ["x", "-0.3*y"] }
+d = { type = "comparator", in = ["y", "-0.1*x"] }
+k = { type = "multiplier", in = ["c", "d"] }
+[outputs]
+x = "x"
+)toml",
+                                                                        "decay.toml"),
+                                                 shipped_blocks(), *diagram::find_machine("tr-10"));
+  EXPECT_EQ(placed.failure, "");
+  EXPECT_TRUE(placed.overloads.empty()) << placed.overloads.front().signal;
+}
+
 // An orbit about a centre, by dividers: y reaches the machine unit and goes over it by a millionth, for which
 // the gain of the amplifiers is to blame, and its square by two. The square is what the scale of y makes it.
 TEST(DiagramOnMachine, MakesRoomForProductsInTheirFactors) {

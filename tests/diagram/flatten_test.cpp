@@ -393,5 +393,24 @@ TEST_F(Flatten, TakesThousandsOfBlocks) {
   EXPECT_EQ(input_text(d, d.blocks.back().inputs[0]), "2*b7998 + -1*b7999");
 }
 
+// The column of time is no name for an output: said where it is named, or at the block that has it.
+TEST(FlatOutputs, AreNotCalledAsTheColumnOfTime) {
+  const BlockLibrary library = BlockLibrary::shipped();
+  const auto message = [&](const std::string& outputs) {
+    return message_of([&] {
+      flatten(parse_diagram("format = \"oblique-diagram/1\"\n[blocks]\nx = { type = \"constant\" }\n"
+                            "t = { type = \"constant\" }\n" +
+                                outputs,
+                            "d.toml"),
+              library);
+    });
+  };
+  EXPECT_EQ(message(""),
+            "d.toml:4:1: an output is called 't', which is the column of time; expected another name\n"
+            "  remedy: name it in [outputs]");
+  EXPECT_EQ(message("[outputs]\nt = \"x\"\n"),
+            "d.toml:6:5: an output is called 't', which is the column of time; expected another name");
+}
+
 }  // namespace
 }  // namespace oblique::diagram

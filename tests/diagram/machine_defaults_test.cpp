@@ -53,6 +53,20 @@ TEST_F(OnAMachine, ValuesOfTheUserStay) {
   EXPECT_EQ(parameter(set, "a", "gain"), 70);
 }
 
+// 30 V of the EC-1's 60 V; its gain is left out, one that the diagram gives is not.
+TEST_F(OnAMachine, IdealElementsKeepTheVoltageOfTheMachine) {
+  const Diagram diagram = parse_diagram(
+      testing::diagram_text(std::string(kSummers) + "c = { type = \"constant\", value = \"30 V\" }\n", kEc1),
+      "d.toml");
+  const BlockLibrary library = BlockLibrary::shipped();
+  const FlatDiagram ideal = flatten_on_ideal_elements(diagram, library, {{"a.offset", "6 V"}});
+  EXPECT_EQ(parameter(ideal, "c", "value"), 0.5);
+  EXPECT_EQ(parameter(ideal, "a", "offset"), 0.1);
+  EXPECT_EQ(parameter(ideal, "a", "gain"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(parameter(ideal, "a", "limit"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(parameter(ideal, "b", "gain"), 50);
+}
+
 TEST_F(OnAMachine, ValuesOfTheUserStayWhereTheyAreTheDefault) {
   EXPECT_EQ(parameter(flat("a = { type = \"summer\", in = \"a\", gain = inf }\n"), "a", "gain"),
             std::numeric_limits<double>::infinity());

@@ -162,6 +162,8 @@ TEST(ShippedMachines, HaveTheUnitsAndStepsThatArePublished) {
   EXPECT_EQ(find_machine("tr-48")->unit, std::nullopt);
   EXPECT_TRUE(find_machine("lucidac")->signed_coefficients);
   EXPECT_FALSE(find_machine("tr-10")->signed_coefficients);
+  EXPECT_FALSE(find_machine("lucidac")->inverting_summers);  // identity elements
+  EXPECT_TRUE(find_machine("tr-10")->inverting_summers);
   EXPECT_FALSE(find_machine("ideal")->inverting);
   EXPECT_TRUE(find_machine("mn-14")->inverting);
   // Unknown is not the same as any.

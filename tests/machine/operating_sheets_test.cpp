@@ -67,9 +67,9 @@ cycles = 8
                                  1, of_ten_volts());
   EXPECT_EQ(sheet.title, "modes of operation, 8 cycles");
   EXPECT_THAT(sheet.columns, ElementsAre("group", "integrators", "initial by", "hold by", "for 0.1 s",
-                                         "until A1 > 5 V", "for 2 s or until A1 < 2 V"));
-  EXPECT_THAT(sheet.rows, ElementsAre(ElementsAre("main", "A1", "", "", "initial", "operate", "hold"),
-                                      ElementsAre("slow", "A3", "", "K1", "hold", "operate", "hold")));
+                                         "until A1 > 5 V", "for 2 s or until A1 < 2 V", "cycles"));
+  EXPECT_THAT(sheet.rows, ElementsAre(ElementsAre("main", "A1", "", "", "initial", "operate", "hold", "8"),
+                                      ElementsAre("slow", "A3", "", "K1", "hold", "operate", "hold", "8")));
 }
 
 }  // namespace

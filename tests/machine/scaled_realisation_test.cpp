@@ -254,6 +254,25 @@ y     = { type = "cosine", in = "angle" }
   EXPECT_NEAR(off, made.functions[0].error, 2e-5);
 }
 
+// A forcing by points, (0, 0), (1, 3), (3, −1): its integral at 3 is 1.5 + 2. The lines are those of the
+// points, so that what is left is the solver's 1e-8.
+TEST(ScaledRealisation, SetsAFunctionGeneratorByTheLinesOfARecording) {
+  const ScaledRealisation made = realise_scaled(parsed(R"toml(
+[run]
+until = 3
+[blocks]
+u = { type = "recording", data = [[0, 0], [1, 1.5], [3, -0.5]], scale = 2 }
+x = { type = "integrator", in = ["u"] }
+[outputs]
+x = "x"
+)toml"),
+                                                shipped_blocks(), desk_machine());
+  ASSERT_EQ(made.functions.size(), 1U);
+  EXPECT_EQ(made.functions[0].segments, 2);
+  const solve::Trajectory run = trajectory_of(made.diagram);
+  EXPECT_NEAR(run.at(run.rows() - 1, 1), 3.5, 1e-7);
+}
+
 /// 1 machine unit of each integrator, in the units of the problem, by name.
 std::map<std::string, double> units_of(const ScaledRealisation& made) {
   std::map<std::string, double> units;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/machine/sheets.h>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -102,14 +103,67 @@ f = { type = "function-generator", in = "x", points = [[-1, 0.5], [-0.4, -0.1], 
       make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts())
           .functions;
   EXPECT_THAT(functions.columns, ElementsAre("element", "signal", "breakpoint [V]", "output [V]",
-                                             "slope beyond", "slope added"));
+                                             "slope beyond", "slope added", "side"));
   EXPECT_THAT(functions.rows,
-              ElementsAre(ElementsAre("F1", "f", "0.0000", "1.0000", "0.5000", ""),
-                          ElementsAre("F1", "f", "2.0000", "2.0000", "1.0000", "0.5000"),
-                          ElementsAre("F1", "f", "5.0000", "5.0000", "jump", ""),
-                          ElementsAre("F1", "f", "5.0000", "0.0000", "0.0000", ""),
-                          ElementsAre("F1", "f", "-4.0000", "-1.0000", "-1.0000", "-1.5000")));
+              ElementsAre(ElementsAre("F1", "f", "0.0000", "1.0000", "0.5000", "", ""),
+                          ElementsAre("F1", "f", "2.0000", "2.0000", "1.0000", "0.5000", "above"),
+                          ElementsAre("F1", "f", "5.0000", "5.0000", "jump", "", "above"),
+                          ElementsAre("F1", "f", "5.0000", "0.0000", "0.0000", "", "above"),
+                          ElementsAre("F1", "f", "-4.0000", "-1.0000", "-1.0000", "-1.5000", "below")));
   EXPECT_TRUE(sheets(ten_volts()).functions.rows.empty());
+}
+
+/// What a function generator gives that is set by a sheet alone, from the line about zero outwards [V].
+double by_sheet(const Sheet& sheet, double x) {
+  double y = std::stod(sheet.rows[0][3]) + std::stod(sheet.rows[0][4]) * x;
+  for (std::size_t r = 1; r < sheet.rows.size(); ++r) {
+    const double at = std::stod(sheet.rows[r][2]), added = std::stod(sheet.rows[r][5]);
+    if (sheet.rows[r][6] == "above" ? x > at : x < at) y += added * (x - at);
+  }
+  return y;
+}
+
+// A corner at zero, or beside it by less than the sheet shows: of 0.0000 V nothing says on which side the
+// function bends. −2 V … 2 V in steps of 1; four digits of a volt, and of slopes.
+TEST(Sheets, SayOnWhichSideAFunctionGeneratorBends) {
+  for (const char* const corner : {"0", "1e-9", "-1e-9"}) {
+    for (const double below : {-1.0, 0.5}) {
+      const diagram::FlatDiagram flat = diagram::flatten(
+          diagram::parse_diagram(
+              testing::diagram_text(fmt::format(
+                  "x = {{ type = \"integrator\", in = [\"f\"] }}\nf = {{ type = \"function-generator\", in = "
+                  "\"x\", points = [[-1, {}], [{}, 0], [1, 2]] }}\n",
+                  -below, corner)),
+              "d.toml"),
+          shipped_blocks());
+      const Sheet sheet =
+          make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"),
+                      ten_volts())
+              .functions;
+      for (const double x : {-2.0, -1.0, 1.0, 2.0})
+        EXPECT_NEAR(by_sheet(sheet, x), x < 0 ? below * x : 2 * x, 4e-4) << corner << ", at " << x << " V";
+    }
+  }
+}
+
+// The same circuit on a machine whose summers do not invert: s = −25 xy is then −25 of xy at its inputs, and
+// all else is as it was.
+TEST(Sheets, GiveTheOtherSignToSummersThatDoNotInvert) {
+  diagram::MachineProfile machine = testing::signed_machine();
+  const MachineSheets inverting = sheets(machine);
+  machine.inverting_summers = false;
+  const MachineSheets made = sheets(machine);
+  const auto to_s = [](const Sheet& connections) {
+    std::vector<std::string> inputs;
+    for (const auto& row : connections.rows) {
+      if (row[3] == "s") inputs.push_back(row[4]);
+    }
+    return inputs;
+  };
+  EXPECT_THAT(to_s(inverting.connections), ElementsAre("3 inputs ×10"));
+  EXPECT_THAT(to_s(made.connections), ElementsAre("3 inputs −×10"));
+  EXPECT_EQ(to_csv(made.static_test), to_csv(inverting.static_test));
+  EXPECT_THAT(made.potentiometers.rows, Contains(Contains("−25 of xy in s")));
 }
 
 TEST(Sheets, ComputeInMachineUnitsWhereTheVoltageIsNotKnown) {

@@ -35,6 +35,17 @@ TEST(JudgementText, WarnsOfAnOverloadBeyondTheErrorsOfElements) {
                   .ends_with("\nwarning: it overloads the machine; choose a larger --unit\n"));
 }
 
+// An excess of a few millionths is one: in digits of the signal it would read as 1.
+TEST(JudgementText, SaysHowFarASignalGoesBeyondTheMachineUnit) {
+  commission::DiagramOnMachine patched;
+  patched.overloads = {{"x", 1.00004}, {"y", 1.00001}};
+  diagram::MachineProfile machine;
+  machine.title = "Machine";
+  EXPECT_TRUE(
+      machine_text(patched, machine)
+          .ends_with("\nwarning: on the elements of Machine 'x' goes 0.004 % beyond the machine unit\n"));
+}
+
 TEST(JudgementText, NamesTheLoopsThatDoNotSettle) {
   commission::Judgement judgement = good();
   judgement.swinging = {"c", "s"};

@@ -176,7 +176,7 @@ TEST(NotFinite, SignalAtTheStart) {
   EXPECT_EQ(f.time, 0);
   EXPECT_THAT(f.message, HasSubstr("the signal 'v' is not a finite number at t = 0"));
   EXPECT_THAT(f.message,
-              HasSubstr("remedy: look for a division by zero or a root or logarithm of a negative signal"));
+              HasSubstr("remedy: look for a division by zero, a root or logarithm of a negative signal"));
 }
 
 TEST(NotFinite, DerivativeAtTheStart) {

@@ -109,7 +109,8 @@ TEST(DocumentMessages, GiveThePlaceAndHowToWriteIt) {
   EXPECT_THAT(document_message("a = 1\na = 2\n"),
               StartsWith("test.toml:2:5: broken TOML: parsing key-value pair: cannot redefine"));
   EXPECT_THAT(document_message("a = \"\xFF\"\n"),
-              StartsWith("test.toml:1:5: broken TOML: Encountered invalid utf-8 sequence"));
+              AllOf(StartsWith("test.toml:1:5: broken TOML: Encountered invalid utf-8 sequence"),
+                    HasSubstr("remedy: save the file anew and choose UTF-8 as its encoding")));
   EXPECT_THAT(document_message("a = 1e400"),
               StartsWith("test.toml:1:10: broken TOML: parsing floating-point: '1e400'"));
   EXPECT_THAT(document_message("a = 99999999999999999999"), HasSubstr("is not representable in 64 bits"));

@@ -18,6 +18,8 @@
 
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flatten.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
 #include <oblique/report/budget_report.h>
 #include <oblique/report/comparison_chart.h>
 #include <oblique/report/comparison_report.h>
@@ -244,13 +246,12 @@ ExitStatus compare_diagram(const diagram::BlockLibrary& library, const CompareRe
     drawn = patched.made.diagram;
     told = report::machine_text(patched, *machine) + "\n";
   }
-  diagram::Diagram ideal = given;
-  ideal.machine.profile = "ideal";
+  const diagram::FlatDiagram ideal = diagram::flatten_on_ideal_elements(given, library);
   const compare::MonteCarloOptions usual;
   const auto reference = [&](int rows) {
-    solve::RunOptions options = solve::options_of(ideal.run);
+    solve::RunOptions options = solve::options_of(given.run);
     options.samples = rows;
-    return solve::run(ideal, library, options).trajectory;
+    return solve::run(network::Program(network::assemble(ideal)), ideal, options).trajectory;
   };
   std::string text =
       fmt::format("{}{}\n{}", request.mechanism, given.title.empty() ? "" : ": " + given.title, told);

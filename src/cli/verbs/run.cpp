@@ -247,11 +247,13 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   const ColumnChoice choice(columns, request.columns);
   std::optional<report::DrawnColumns> drawn;
   if (!request.plot.empty()) drawn = report::drawn_columns(columns, {request.columns, request.against});
-  const network::Program program(network::assemble(flat));
   if (request.static_test) {
+    const diagram::FlatDiagram ideal = diagram::flatten_on_ideal_elements(diagram, library, overrides);
+    const network::Program program(network::assemble(ideal));
     print(report::static_test_text(solve::static_test(program, diagram.file)));
     return ExitStatus::done;
   }
+  const network::Program program(network::assemble(flat));
   options.halt_on_overload = request.halt_on_overload;
   options.trust = request.trust;
   options.watch_overloads = diagram.machine.profile != "ideal";

@@ -14,9 +14,11 @@
 namespace oblique::commission {
 namespace {
 
-diagram::Diagram without_machine(diagram::Diagram diagram) {
-  diagram.machine.profile = "ideal";
-  return diagram;
+solve::Trajectory run_on_ideal_elements(const diagram::Diagram& diagram,
+                                        const diagram::BlockLibrary& library) {
+  const diagram::FlatDiagram flat = diagram::flatten_on_ideal_elements(diagram, library);
+  return solve::run(network::Program(network::assemble(flat)), flat, solve::options_of(diagram.run))
+      .trajectory;
 }
 
 /// The largest difference between two runs of the same outputs, over the largest value of the output; one
@@ -152,9 +154,8 @@ DiagramOnMachine put_on_machine(const diagram::Diagram& diagram, const diagram::
   } catch (const solve::SolveError& error) {
     find_end(error, library, result);
   }
-  result.difference = difference_of(solve::run(without_machine(diagram), library).trajectory,
-                                    solve::run(without_machine(result.made.diagram), library).trajectory,
-                                    result.made.diagram);
+  result.difference = difference_of(run_on_ideal_elements(diagram, library),
+                                    run_on_ideal_elements(result.made.diagram, library), result.made.diagram);
   return result;
 }
 

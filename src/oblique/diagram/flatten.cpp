@@ -308,17 +308,16 @@ void check_settings(const Diagram& diagram, const Scope& scope, text::Diagnostic
     wiring::check_override_path(scope, question->answer, question->place, diagnostics);
 }
 
-}  // namespace
-
-FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
-                    const std::vector<ParameterOverride>& overrides) {
+/// Of elements that are as the machine `elements` has them.
+FlatDiagram flatten_on(const std::string& elements, const Diagram& diagram, const BlockLibrary& library,
+                       const std::vector<ParameterOverride>& overrides) {
   FlatDiagram flat;
   flat.file = diagram.file;
   text::Diagnostics diagnostics;
   wiring::Resolver resolver(library, diagnostics);
   const Scope scope = resolver.diagram(diagram);
   const wiring::Replacements replacements = wiring::resolve_overrides(scope, overrides, diagnostics);
-  wiring::MachineDefaults machine(diagram.machine.profile);
+  wiring::MachineDefaults machine(elements);
   const Layout layout(scope, machine, replacements, flat, diagnostics);
   choose_outputs(diagram, scope, layout, flat, diagnostics);
   for (const auto& [path, tolerance] : diagram.run.tolerances) {
@@ -347,15 +346,32 @@ FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
   std::vector<std::string> names;
   for (const FlatOutput& output : flat.outputs) names.push_back(output.name);
   if (std::find(names.begin(), names.end(), "t") != names.end()) {
-    diagnostics.add({{diagram.file, {}},
-                     "an output is called 't', which is the column of time",
-                     "another name",
-                     "name it in [outputs]"});
+    const auto is_t = [](const auto& named) { return named.name == "t"; };
+    const auto output = std::find_if(diagram.outputs.begin(), diagram.outputs.end(), is_t);
+    const auto block = std::find_if(diagram.blocks.begin(), diagram.blocks.end(), is_t);
+    const bool is_listed = output != diagram.outputs.end();
+    diagnostics.add({is_listed                       ? output->place
+                     : block != diagram.blocks.end() ? block->place
+                                                     : text::Place{diagram.file, {}},
+                     "an output is called 't', which is the column of time", "another name",
+                     is_listed ? "" : "name it in [outputs]"});
   }
   if (diagnostics.empty()) check_expected_outputs(diagram, names, diagnostics);
   check_settings(diagram, scope, diagnostics);
   diagnostics.throw_if_any<DiagramError>();
   return flat;
+}
+
+}  // namespace
+
+FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
+                    const std::vector<ParameterOverride>& overrides) {
+  return flatten_on(diagram.machine.profile, diagram, library, overrides);
+}
+
+FlatDiagram flatten_on_ideal_elements(const Diagram& diagram, const BlockLibrary& library,
+                                      const std::vector<ParameterOverride>& overrides) {
+  return flatten_on("ideal", diagram, library, overrides);
 }
 
 }  // namespace oblique::diagram

@@ -16,4 +16,9 @@ namespace oblique::diagram {
 FlatDiagram flatten(const Diagram& diagram, const BlockLibrary& library,
                     const std::vector<ParameterOverride>& overrides = {});
 
+/// The same of ideal elements: nothing that the machine's profile says of its own acts, but a voltage is
+/// still one of that machine.
+FlatDiagram flatten_on_ideal_elements(const Diagram& diagram, const BlockLibrary& library,
+                                      const std::vector<ParameterOverride>& overrides = {});
+
 }  // namespace oblique::diagram

@@ -49,6 +49,7 @@ struct MachineProfile {
   std::string comment;
   std::optional<double> unit;       ///< [V]
   bool inverting = true;            ///< summers and integrators invert
+  bool inverting_summers = true;    ///< false: in diagrams they do, on the machine summers do not
   std::vector<double> input_gains;  ///< ascending; empty: any
   std::vector<double> rates;        ///< k0 of integrators [1/s], ascending; empty: any
   bool input_gains_known = true;    ///< false: not published, and `input_gains` is empty

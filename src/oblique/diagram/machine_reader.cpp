@@ -33,6 +33,7 @@ class MachineReader {
     machine_.comment = reader_.string("comment").value_or("");
     read_unit();
     machine_.inverting = reader_.boolean("inverting").value_or(true);
+    machine_.inverting_summers = reader_.boolean("inverting_summers").value_or(true);
     machine_.signed_coefficients = reader_.boolean("signed_coefficients").value_or(false);
     machine_.input_gains_known = read_steps("input_gains", "1", machine_.input_gains);
     machine_.rates_known = read_steps("rates", "1/s", machine_.rates);

@@ -51,7 +51,11 @@ Sheet mode_sheet(const diagram::FlatDiagram& diagram, double until, const diagra
   for (const diagram::FlatPhase& phase : timeline.phases)
     sheet.columns.push_back(end_of(phase, numbers, machine));
   if (timeline.phases.empty()) sheet.columns.push_back(fmt::format("for {:.6g} s", until));
-  if (timeline.cycles != 1) sheet.title += fmt::format(", {:g} cycles", timeline.cycles);
+  const bool repeats = timeline.cycles != 1;
+  if (repeats) {
+    sheet.title += fmt::format(", {:g} cycles", timeline.cycles);
+    sheet.columns.emplace_back("cycles");
+  }
 
   const auto line = [&](const std::optional<diagram::SignalRef>& signal) {
     return signal ? numbers[signal->block] : std::string();
@@ -69,6 +73,7 @@ Sheet mode_sheet(const diagram::FlatDiagram& diagram, double until, const diagra
     for (const diagram::FlatPhase& phase : timeline.phases)
       row.emplace_back(diagram::mode_name(phase.modes[g]));
     if (timeline.phases.empty()) row.emplace_back("operate");
+    if (repeats) row.push_back(fmt::format("{:g}", timeline.cycles));
     sheet.rows.push_back(std::move(row));
   }
   return sheet;

@@ -25,11 +25,6 @@
 namespace oblique::machine {
 namespace {
 
-diagram::Diagram on_ideal_machine(diagram::Diagram diagram) {
-  diagram.machine.profile = "ideal";
-  return diagram;
-}
-
 /// The machine without any errors, so that a diagram written for it says all of its own.
 diagram::MachineProfile without_errors(diagram::MachineProfile machine) {
   machine.errors.clear();
@@ -101,7 +96,7 @@ class MachineScaling::State {
         elements_(element_library(library)),
         machine_(machine),
         time_(options.time) {
-    flat_ = diagram::flatten(on_ideal_machine(diagram), elements_);
+    flat_ = diagram::flatten_on_ideal_elements(diagram, elements_);
     const bool has_others = std::any_of(flat_.blocks.begin(), flat_.blocks.end(), [](const auto& block) {
       return block.definition->role == diagram::Role::other;
     });
@@ -109,13 +104,13 @@ class MachineScaling::State {
       functions_ = tabulate_functions(flat_, elements_, machine, signal_ranges(flat_, diagram.run),
                                       diagram.run.until, options.segments);
     }
-    prepare_modes(flat_, diagram::flatten(on_ideal_machine(diagram), library), elements_, machine);
+    prepare_modes(flat_, diagram::flatten_on_ideal_elements(diagram, library), elements_, machine);
     circuit_ = reduce(flat_, elements_, most_weight_of_one(machine));
     check_elements(circuit_, machine);
     const Realisation unscaled = write_elements(diagram, flat_, elements_, without_errors(machine), circuit_);
     const auto peaks = [&] {
       try {
-        return peaks_by_name(on_ideal_machine(unscaled.diagram));
+        return peaks_of(diagram::flatten_on_ideal_elements(unscaled.diagram, library_), diagram.run);
       } catch (const solve::SolveError& error) {
         if (functions_.empty()) throw;
         throw RealiseError(
@@ -151,7 +146,14 @@ class MachineScaling::State {
   }
 
   bool make_room(const ScaledRealisation& realised) {
-    const auto peaks = peaks_by_name(realised.diagram);
+    auto peaks = peaks_by_name(realised.diagram);
+    // What goes beyond the unit by an inverter's own error is the signal that it inverts.
+    const diagram::FlatDiagram flat = diagram::flatten(realised.diagram, library_);
+    for (const diagram::FlatBlock& block : flat.blocks) {
+      if (block.definition->role != diagram::Role::inverter || block.inputs.front().terms.empty()) continue;
+      double& inverted = peaks.at(flat.blocks[block.inputs.front().terms.front().signal.block].path);
+      inverted = std::max(inverted, peaks.at(block.path));
+    }
     bool more = false;
     for (std::size_t e = 0; e < realised.scales.size(); ++e) {
       const double peak = peaks.at(realised.scales[e].signal);

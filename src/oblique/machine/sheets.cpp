@@ -36,7 +36,12 @@ class SheetMaker {
     for (std::size_t b = 0; b < diagram.blocks.size(); ++b) {
       const diagram::FlatBlock& block = diagram.blocks[b];
       for (std::size_t port = 0; port < block.inputs.size(); ++port) {
-        for (const diagram::FlatTerm& term : block.inputs[port].terms) connect(b, port, term);
+        for (diagram::FlatTerm term : block.inputs[port].terms) {
+          // In diagrams for the machine all summers invert.
+          if (!machine.inverting_summers && block.definition->role == Role::summer)
+            term.weight = -term.weight;
+          connect(b, port, term);
+        }
       }
     }
   }
@@ -76,7 +81,7 @@ class SheetMaker {
   Sheet functions() const {
     Sheet sheet{"function generators",
                 {"element", "signal", fmt::format("breakpoint [{}]", unit_),
-                 fmt::format("output [{}]", unit_), "slope beyond", "slope added"},
+                 fmt::format("output [{}]", unit_), "slope beyond", "slope added", "side"},
                 {}};
     for (std::size_t b = 0; b < diagram_.blocks.size(); ++b) {
       const diagram::FlatBlock& block = diagram_.blocks[b];
@@ -110,23 +115,27 @@ class SheetMaker {
   }
 
  private:
-  /// The line about 0, the breakpoints above it, and those below it, each outwards.
+  /// The line about 0, the breakpoints above it, and those below it, each outwards. One at 0 itself counts
+  /// as below, which its side says.
   void add_function(Sheet& sheet, std::size_t block, const text::PointTable& points) const {
     const std::vector<double>&x = points.x, &y = points.y;
     const auto slope = [&](std::size_t line) { return (y[line + 1] - y[line]) / (x[line + 1] - x[line]); };
-    const auto row = [&](double at, double value, const std::string& beyond, const std::string& added) {
+    const auto row = [&](double at, double value, const std::string& beyond, const std::string& added,
+                         const char* side) {
       sheet.rows.push_back(
-          {numbers_[block], diagram_.blocks[block].path, voltage(at), voltage(value), beyond, added});
+          {numbers_[block], diagram_.blocks[block].path, voltage(at), voltage(value), beyond, added, side});
     };
     const auto breakpoint = [&](std::size_t point, std::size_t before, std::size_t beyond) {
+      const char* const side = beyond < before ? "below" : "above";
       // Two points of one x: what follows is a jump there.
-      if (x[beyond] == x[beyond + 1]) return row(x[point], y[point], "jump", "");
+      if (x[beyond] == x[beyond + 1]) return row(x[point], y[point], "jump", "", side);
       const bool jumps = x[before] == x[before + 1];
-      row(x[point], y[point], rounded(slope(beyond)), jumps ? "" : rounded(slope(beyond) - slope(before)));
+      row(x[point], y[point], rounded(slope(beyond)), jumps ? "" : rounded(slope(beyond) - slope(before)),
+          side);
     };
     std::size_t middle = 0;
     while (middle + 2 < x.size() && !(x[middle + 1] > 0)) ++middle;
-    row(0, y[middle] - slope(middle) * x[middle], rounded(slope(middle)), "");
+    row(0, y[middle] - slope(middle) * x[middle], rounded(slope(middle)), "", "");
     for (std::size_t point = middle + 1; point + 1 < x.size(); ++point) breakpoint(point, point - 1, point);
     for (std::size_t point = middle; point > 0; --point) breakpoint(point, point, point - 1);
   }

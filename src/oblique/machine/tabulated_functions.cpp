@@ -20,22 +20,23 @@ namespace {
 constexpr double kStraight = 1e-12;
 constexpr double kMostError = 0.05;  ///< of the span: lines that miss by more do not stand for the function
 
-/// Finds what a block computes from its one argument.
+/// Finds what a block computes from its one argument, be it by a formula or by points.
 class FunctionReader {
  public:
   explicit FunctionReader(diagram::FlatBlock block)
-      : block_(std::move(block)), definition_(*block_.definition) {}
+      : block_(std::move(block)), definition_(*block_.definition), equations_(block_.behaviour->equations) {
+    for (diagram::Equation& equation : equations_) write_out_tables(equation.expression);
+  }
 
   /// Whether its outputs depend on one input or on time alone, and on nothing that was before.
   bool is_function() {
-    const auto& equations = block_.behaviour->equations;
     const auto assigns = [](const diagram::Equation& equation) {
       return equation.kind == diagram::Equation::Kind::assignment;
     };
-    if (!definition_.memories.empty() || !std::all_of(equations.begin(), equations.end(), assigns))
+    if (!definition_.memories.empty() || !std::all_of(equations_.begin(), equations_.end(), assigns))
       return false;
     bool time = false;
-    for (const diagram::Equation& equation : equations) {
+    for (const diagram::Equation& equation : equations_) {
       for (const text::Expression* const name : diagram::names_in(equation.expression)) {
         if (name->name == "time") time = true;
       }
@@ -46,7 +47,7 @@ class FunctionReader {
       input_ = i;
     }
     if (!time && !input_) return false;
-    try {  // a table, a mode of operation: no function that is known here
+    try {  // a mode of operation: no function that is known here
       for (std::size_t k = 0; k < definition_.outputs.size(); ++k) value(k, 0.5);
     } catch (const text::ExpressionError&) {
       return false;
@@ -62,9 +63,27 @@ class FunctionReader {
   }
 
  private:
+  /// Puts the points in the place of a parameter that is a function: table(x, data) is table(x, x1, y1, …).
+  void write_out_tables(text::Expression& expression) const {
+    for (text::Expression& operand : expression.operands) write_out_tables(operand);
+    const bool is_named = expression.kind == text::Expression::Kind::call &&
+                          expression.function == text::Function::table && expression.operands.size() == 2;
+    if (!is_named) return;
+    const auto parameter = definition_.find_parameter(expression.operands[1].name);
+    if (!parameter) return;
+    const text::PointTable& points = block_.points[*parameter];
+    expression.operands.pop_back();
+    for (std::size_t k = 0; k < points.x.size(); ++k) {
+      for (const double coordinate : {points.x[k], points.y[k]}) {
+        text::Expression number;
+        number.number = coordinate;
+        expression.operands.push_back(std::move(number));
+      }
+    }
+  }
+
   double value_of(std::string_view target, double argument) const {
-    const auto& equations = block_.behaviour->equations;
-    const auto equation = std::find_if(equations.begin(), equations.end(),
+    const auto equation = std::find_if(equations_.begin(), equations_.end(),
                                        [&](const diagram::Equation& e) { return e.target == target; });
     return text::evaluate(equation->expression, [&](std::string_view name) -> std::optional<double> {
       if (name == "time") return argument;
@@ -72,7 +91,7 @@ class FunctionReader {
       if (const auto p = definition_.find_parameter(name)) return block_.parameters[*p];
       if (const auto i = definition_.find_input(name))
         return i == input_ ? argument : block_.inputs[*i].constant;
-      const bool known = std::any_of(equations.begin(), equations.end(),
+      const bool known = std::any_of(equations_.begin(), equations_.end(),
                                      [&](const diagram::Equation& e) { return e.target == name; });
       return known ? std::optional(value_of(name, argument)) : std::nullopt;
     });
@@ -80,6 +99,7 @@ class FunctionReader {
 
   diagram::FlatBlock block_;
   const diagram::BlockDefinition& definition_;
+  std::vector<diagram::Equation> equations_;
   std::optional<std::size_t> input_;
 };
 

@@ -87,8 +87,9 @@ std::string machine_text(const commission::DiagramOnMachine& patched,
     text +=
         fmt::format("warning: on the elements of {} it does not run: {}\n", machine.title, patched.failure);
   } else if (!patched.overloads.empty()) {
-    text += fmt::format("warning: on the elements of {} '{}' reaches {:.3g} machine units\n", machine.title,
-                        patched.overloads.front().signal, patched.overloads.front().peak);
+    text += fmt::format("warning: on the elements of {} '{}' goes {:.2g} % beyond the machine unit\n",
+                        machine.title, patched.overloads.front().signal,
+                        (patched.overloads.front().peak - 1) * 100);
   }
   return text;
 }

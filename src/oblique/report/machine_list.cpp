@@ -63,7 +63,9 @@ std::string page_of(const diagram::MachineProfile& machine, const diagram::Block
   std::string text = fmt::format("{} ({})\n", machine.title, machine.name);
   if (!machine.comment.empty()) text += machine.comment + (machine.comment.ends_with('\n') ? "" : "\n");
   Table facts({"machine unit", machine.unit ? short_number(*machine.unit) + " V" : "unknown"});
-  facts.add({"summers and integrators", machine.inverting ? "invert" : "do not invert"});
+  facts.add({"summers and integrators", !machine.inverting          ? "do not invert"
+                                        : machine.inverting_summers ? "invert"
+                                                                    : "integrators invert, summers do not"});
   facts.add({"input gains", text_of(machine.input_gains, machine.input_gains_known)});
   facts.add({"time factors k0 [1/s]", text_of(machine.rates, machine.rates_known)});
   facts.add({"amplifiers saturate at",
@@ -115,6 +117,7 @@ Json json_of(const diagram::MachineProfile& machine) {
           {"comment", machine.comment},
           {"unit", machine.unit ? Json(*machine.unit) : Json("unknown")},
           {"inverting", machine.inverting},
+          {"inverting_summers", machine.inverting_summers},
           {"input_gains", steps_json(machine.input_gains, machine.input_gains_known)},
           {"rates", steps_json(machine.rates, machine.rates_known)},
           {"signed_coefficients", machine.signed_coefficients},

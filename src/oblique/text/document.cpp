@@ -166,6 +166,7 @@ std::string with_plain_signs(std::string_view text) {
 
 /// What to do about a line that is no TOML.
 std::string remedy_for(std::string_view text, int line) {
+  if (!is_utf8(text)) return "save the file anew and choose UTF-8 as its encoding";
   for (int k = 1; k < line && !text.empty(); ++k)
     text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   text = text.substr(0, text.find('\n'));

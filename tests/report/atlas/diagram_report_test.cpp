@@ -128,6 +128,27 @@ across = "across"
   EXPECT_THAT(test, Not(HasSubstr("<td>crank.")));                              // the inside of a composite
 }
 
+// Values in volts of a machine whose amplifiers have a bandwidth: the equations are those of ideal ones, and
+// the static test what one computes by hand, x = 5 V, v′ = 0.3·5 V + 2 V.
+TEST(DiagramReport, TakesValuesInVoltsAsThoseOfIdealElements) {
+  const std::string page = page_of(R"toml(format = "oblique-diagram/1"
+[machine]
+profile = "tr-10"
+[run]
+until = 1
+[blocks]
+x = { type = "integrator", in = ["v"], initial = "5 V" }
+v = { type = "integrator", in = ["-0.3*x", "-0.1*v", "c"] }
+c = { type = "constant", value = "-2 V" }
+)toml");
+  EXPECT_THAT(page, HasSubstr("<span>dx/dt = −v,   starting from 0.5</span>"
+                              "<span>dv/dt = 0.3·x + 0.1·v + 0.2,   starting from 0</span>"));
+  const std::string test = page.substr(page.find(">Static test</h2>"));
+  EXPECT_THAT(test, HasSubstr("<td>x</td><td class=\"n\">5</td><td class=\"n\">0</td>"));
+  EXPECT_THAT(test, HasSubstr("<td>v</td><td class=\"n\">0</td><td class=\"n\">3.5</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("Where it comes from")));  // nothing is known of that
+}
+
 TEST(DiagramReport, SaysWhatAnAmplifierSolvesFor) {
   EXPECT_THAT(page_of("format = \"oblique-diagram/1\"\n[run]\nuntil = 1\n[blocks]\n"
                       "x = { type = \"constant\", value = 0.5 }\n"

@@ -94,6 +94,30 @@ q = { type = "servo-amplifier", in = ["xq", "-z"], gain = inf }
               ElementsAre("der(x) = 0.3, from 0.5", "0 = x*q - 0.3, solved for q"));
 }
 
+// What is compared stands there as the circuit has it, not by the names that the block's file gives its
+// inputs.
+TEST(RecoveredEquations, SayWhatSwitchesByTheSignalsThatItCompares) {
+  EXPECT_THAT(
+      equations(
+          R"toml(x = { type = "integrator", in = ["-2*y"], initial = 1 }
+y = { type = "integrator", in = ["x"], initial = 0.5 }
+l = { type = "limiter", in = "e", low = -0.1, high = 0.2 }
+e = { type = "summer", in = ["3*x", "-1*y"] }
+m = { type = "maximum", in = ["y", "x"] }
+s = { type = "step", at = 2, from = 1, to = 3 }
+)toml",
+          "[outputs]\nX = { signal = \"x\", scale = 10 }\ny = \"y\"\nl = \"l\"\nm = \"m\"\ns = \"s\"\n"),
+      ElementsAre("der(X) = -20*y, from 10", "der(y) = 0.1*X, from 0.5",
+                  "l = if(0.3*X - y > 0.2, 0.2, if(y - 0.3*X > 0.1, -0.1, 0.3*X - y))",
+                  "m = if(y - 0.1*X > 0, y, 0.1*X)", "s = if(t >= 2, 3, 1)"));
+  // a comparator that its own output holds: what it compares cannot be written out without end
+  EXPECT_THAT(
+      equations("x = { type = \"integrator\", in = [\"c\"], initial = 1 }\nc = { type = \"comparator\", "
+                "in = [\"x\", \"0.5*c\"] }\n",
+                "[outputs]\nx = \"x\"\n"),
+      ElementsAre(::testing::HasSubstr("der(x) = if(")));
+}
+
 std::vector<std::string> shipped_diagrams() {
   std::vector<std::string> names;
   for (const char* const folder : {"historical", "lessons", "atlas"}) {

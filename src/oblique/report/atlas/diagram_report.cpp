@@ -78,6 +78,8 @@ class DiagramWriter {
   }
 
   void origin() {
+    const std::vector<std::string> words = head_comment(programme_.text);
+    if (!diagram_.published && diagram_.source.empty() && words.empty()) return;
     page_.heading("Where it comes from");
     if (const auto& published = diagram_.published) {
       page_.paragraph(capitalised(diagram::citation(*published)) + ".");
@@ -89,7 +91,7 @@ class DiagramWriter {
     } else if (!diagram_.source.empty()) {
       page_.paragraph(diagram_.source + ".");
     }
-    for (const std::string& paragraph : head_comment(programme_.text)) {
+    for (const std::string& paragraph : words) {
       if (paragraph.starts_with(' ')) {
         page_.element("<pre>" + draw::escape_xml(paragraph) + "</pre>");
       } else {
@@ -112,15 +114,9 @@ class DiagramWriter {
     page_.picture(draw::draw_diagram(diagram_, report_.blocks));
   }
 
-  /// The circuit in ideal elements, which invert as they do; as it is, where values are given in volts.
+  /// The circuit in ideal elements, which invert as they do.
   diagram::FlatDiagram ideal_circuit() const {
-    diagram::Diagram ideal = diagram_;
-    ideal.machine.profile = "ideal";
-    try {
-      return diagram::flatten(ideal, report_.blocks);
-    } catch (const diagram::DiagramError&) {
-      return flat_;
-    }
+    return diagram::flatten_on_ideal_elements(diagram_, report_.blocks);
   }
 
   void equations() {
@@ -307,7 +303,8 @@ class DiagramWriter {
         shown.insert(flat_.signal_name({b, port}));
     }
     try {
-      for (const solve::StaticReading& reading : solve::static_test(program_, diagram_.file)) {
+      for (const solve::StaticReading& reading :
+           solve::static_test(network::Program(network::assemble(ideal_circuit())), diagram_.file)) {
         if (!shown.contains(reading.signal)) continue;
         table.add({reading.signal, readable(reading.output * (in_volts ? volts : 1)),
                    !reading.derivative ? ""

@@ -199,13 +199,39 @@ class EquationReader {
 
   std::string number(double value) const { return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, digits_); }
 
+  /// What a condition compares: "x - 3*y > 0.2".
   std::string condition_text(NodeId id) {
     const Node& node = network_.graph[id];
-    if (node.op != Op::discrete_state) return node_text(id);
-    for (const network::Switch& s : network_.switches) {
-      if (s.discrete_state == node.variable) return fmt::format("{}: {}", s.block, s.comparison);
+    if (node.op == Op::discrete_state) return switch_text(node.variable, true);
+    const bool negated = node.op == Op::subtract && network_.graph.is_constant(node.a) &&
+                         network_.graph[node.a].value == 1 && network_.graph[node.b].op == Op::discrete_state;
+    return negated ? switch_text(network_.graph[node.b].variable, false) : node_text(id);
+  }
+
+  /// The comparison that turns a discrete state over, or its contrary; its name where there is none, or where
+  /// the comparison itself reads it.
+  std::string switch_text(std::uint32_t discrete_state, bool holds) {
+    const auto found = std::find_if(
+        network_.switches.begin(), network_.switches.end(),
+        [&](const network::Switch& candidate) { return candidate.discrete_state == discrete_state; });
+    if (found == network_.switches.end() || !open_.insert(discrete_state).second)
+      return network_.discrete_states[discrete_state].name;
+    std::vector<Monomial> terms = scaled(found->event_function, 1);
+    open_.erase(discrete_state);
+    double level = 0;
+    std::erase_if(terms, [&](const Monomial& term) {
+      const bool is_number = term.factors.empty() && term.divisors.empty();
+      if (is_number) level -= term.coefficient;
+      return is_number;
+    });
+    // -x > 1 is x < -1
+    const bool turned = !terms.empty() && std::signbit(terms.front().coefficient);
+    if (turned) {
+      level = -level;
+      for (Monomial& term : terms) term.coefficient = -term.coefficient;
     }
-    return network_.discrete_states[node.variable].name;
+    const char* const relation = turned ? (holds ? "<" : ">=") : (holds ? ">" : "<=");
+    return fmt::format("{} {} {}", sum_text(terms), relation, number(level));
   }
 
   std::string call(std::string_view name, const Node& node) {
@@ -218,8 +244,11 @@ class EquationReader {
   /// What is neither a sum nor a product.
   std::string other_text(const Node& node) {
     switch (node.op) {
-      case Op::discrete_state:
-        return network_.discrete_states[node.variable].name;
+      case Op::discrete_state: {
+        const std::string comparison = switch_text(node.variable, true);
+        return comparison == network_.discrete_states[node.variable].name ? comparison
+                                                                          : "(" + comparison + ")";
+      }
       case Op::select:
         return fmt::format("if({}, {}, {})", condition_text(node.a), node_text(node.b), node_text(node.c));
       case Op::less:
@@ -394,6 +423,7 @@ class EquationReader {
   std::vector<NodeId> queue_;
   std::size_t next_ = 0;
   std::vector<Output> outputs_;
+  std::set<std::uint32_t> open_;  ///< discrete states whose comparisons are being written
   int unnamed_ = 0;
 };
 

@@ -17,11 +17,13 @@ namespace oblique::solve {
 namespace {
 
 [[noreturn]] void throw_not_finite(const std::string& file, const std::string& signal, double time) {
-  throw SolveError(SolveError::Kind::blow_up, time,
-                   {{file, {}},
-                    fmt::format("the signal '{}' is not a finite number at t = {:.6g} s", signal, time),
-                    {},
-                    "look for a division by zero or a root or logarithm of a negative signal"});
+  throw SolveError(
+      SolveError::Kind::blow_up, time,
+      {{file, {}},
+       fmt::format("the signal '{}' is not a finite number at t = {:.6g} s", signal, time),
+       {},
+       "look for a division by zero, a root or logarithm of a negative signal, or an exponential of a "
+       "large one"});
 }
 
 }  // namespace
