@@ -118,8 +118,7 @@ void check_travel(const Mechanism& mechanism, double duration) {
             mechanism.drives.size() == 1
                 ? "let the motion end earlier, until in [motion]"
                 : "a motion lasts one turn of the first drive: put the fastest drive first in [drives], "
-                  "bring the "
-                  "speeds nearer to each other, or let the motion end earlier, until in [motion]"});
+                  "bring the speeds nearer to each other, or let the motion end earlier, until in [motion]"});
   }
 }
 
