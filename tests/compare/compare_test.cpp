@@ -143,6 +143,33 @@ TEST(Compare, LeavesOutWhatIsRefusedAndWhatFails) {
   EXPECT_THROW(compare(shipped("four-bar"), diagram::BlockLibrary::shipped(), options), patch::PatchError);
 }
 
+// A four-bar a hundred-millionth of its size from a change point. Its amplifiers of ordinary gain run in some
+// thousand steps, and the one of the floor, which nobody asked for, would take minutes until it fails.
+TEST(Compare, GivesUpAFloorThatTakesTooLong) {
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [100, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 40 }
+BC = { points = ["B", "C"], length = 90 }
+CD = { points = ["C", "D"], length = 50.000001 }
+[drives]
+crank = { turns = "AB", about = "A", speed = "60 rpm", start = "90 deg" }
+[sketch]
+C = [80, 50]
+)",
+                                                                    "near.toml");
+  CompareOptions options;
+  options.gains = {1e3, 1e4};
+  const Comparison comparison = compare(mechanism, diagram::BlockLibrary::shipped(), options);
+  ASSERT_EQ(comparison.runs.size(), 2U);
+  EXPECT_LT(comparison.runs[1].steps, 10'000);
+  EXPECT_FALSE(comparison.series.front().floor);
+  // C² = b² where the triangle is all but flat: an amplifier of gain μ leaves a root of 1/μ
+  EXPECT_NEAR(comparison.series.front().order.value(), -0.5, 0.01);
+}
+
 TEST(Compare, IsTheSameWithAnyNumberOfThreads) {
   CompareOptions options;
   options.methods = {patch::PatchMethod::paper, patch::PatchMethod::triangles, patch::PatchMethod::gradient};

@@ -123,6 +123,48 @@ FD = { points = ["F", "D"], length = 4 }
   }
 }
 
+/// Two plates on one pin, B, with two bars from one to the other: a bar too many between them, and nothing
+/// that keeps them from turning about B. The lengths let it close: P = (1, 0), Q = (0, 1), R = (2, 1), S =
+/// (1, 2) about B.
+std::string plates_on(const std::string& second_pin) {
+  return "format = \"oblique-mechanism/1\"\n[frame]\nA = [0, 0]\nB = [1, 0]\nD = " + second_pin +
+         R"toml(
+[bodies]
+u = { points = ["B", "P"], length = 1, marks = { Q = [0, 1] } }
+v = { points = ["D", "R"], length = "sqrt(5)", marks = { S = ["4/sqrt(5)", "3/sqrt(5)"] } }
+PR = { points = ["P", "R"], length = "sqrt(2)" }
+QS = { points = ["Q", "S"], length = "sqrt(2)" }
+[sketch]
+P = [2, 0]
+Q = [1, 1]
+R = [3, 1]
+S = [2, 2]
+)toml";
+}
+
+TEST(AssemblyMode, IsNoneOfAGroupThatTurnsAboutItsOnlyPlace) {
+  const auto [kind, text] = refusal(plates_on("[1, 0]"));
+  EXPECT_EQ(kind, MechanismError::Kind::constraint);
+  EXPECT_THAT(text,
+              HasSubstr("has all its joints with the rest in one place, at 'B': it turns about it while the "
+                        "drives stand still"));
+  EXPECT_THAT(text, HasSubstr("remedy: move one of these joints to another place"));
+  EXPECT_THAT(refusal(plates_on("[1.1, 0]")).second, Not(HasSubstr("in one place")));
+}
+
+// A dyad of two equal bars over one place, and one of two different bars, which do not close there.
+TEST(AssemblyMode, OfADyadOverOnePlace) {
+  const auto dyad = [](const char* second) {
+    return std::string("format = \"oblique-mechanism/1\"\n[frame]\nA = [1, 2]\nD = [1, 2]\n[bodies]\n") +
+           "AC = { points = [\"A\", \"C\"], length = 3 }\nCD = { points = [\"C\", \"D\"], length = " +
+           second + " }\n[sketch]\nC = [4, 2]\n";
+  };
+  const auto [kind, text] = refusal(dyad("3"));
+  EXPECT_EQ(kind, MechanismError::Kind::constraint);
+  EXPECT_THAT(text, HasSubstr("dyad 'AC-CD' has all its joints with the rest in one place, at 'A'"));
+  EXPECT_EQ(refusal(dyad("4")).first, MechanismError::Kind::assembly);
+}
+
 // The link CDFH on rods to E and G, and P and Q on rods to each other, to the frame and to the link: seven
 // conditions for three unknowns of the link and two of each free point, which no part of them gives.
 TEST(AssemblyModes, OfAGroupOfABodyAndTwoFreePoints) {

@@ -292,5 +292,60 @@ K = [100, -9]
   }
 }
 
+// The group of two platforms goes through infinity at 52.47°, and the determinant over the lengths of its
+// rows grows without end there. It is left at a limit beyond, and taken up again at the other end of the way
+// back, which leads through infinity as well. Both ends are folds by the arc length with SciPy.
+TEST(Crossing, TakesAGroupThroughInfinityWhoseDeterminantGrows) {
+  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+F8 = [-0.141, 0.847]
+G11 = [-0.315, -1.018]
+G12 = [0.429, -0.831]
+[bodies]
+k = { points = ["A", "B"], length = 0.182 }
+l1 = { points = ["B", "P1"], length = 1.36, marks = { M13 = [-0.024, 0.584] } }
+u7 = { points = ["P3", "P4"], length = 1.844, marks = { P5 = [-0.029, 0.319] } }
+v7 = { points = ["P5", "P6"], length = 1.277, marks = { P7 = [1.27, 0.987] } }
+c9 = { points = ["F8", "Q9"], length = 0.601 }
+c14 = { points = ["M13", "Q14"], length = 0.608 }
+[slides]
+s1 = { point = "P1", along = ["A", "B"], offset = 0.844 }
+s2 = { point = "P3", along = ["F8", "Q9"], offset = 1.296, of = "u7", angle = "-0.533 rad" }
+s3 = { point = "P4", along = ["B", "P1"], offset = -0.56 }
+s4 = { point = "P6", along = ["G11", "G12"], offset = 1.541 }
+s5 = { point = "P7", along = ["M13", "Q14"], offset = 0.743, of = "v7", angle = "5.927 rad" }
+[drives]
+crank = { turns = "k", about = "A", speed = "1 rad/s", start = "-2.967 rad" }
+[sketch]
+P1 = [1.018, -0.677]
+P3 = [1.134, 0.553]
+P4 = [-0.305, -0.6]
+P5 = [1.356, 0.323]
+P6 = [0.13, 0.683]
+P7 = [-0.141, -0.266]
+Q9 = [-0.354, 0.286]
+M13 = [0.077, 0.494]
+Q14 = [-0.53, 0.452]
+)",
+                                              "platforms.toml");
+  const double degree = std::numbers::pi / 180, start = -2.967;
+  for (const int positions : {37, 361, 1013}) {
+    const Motion motion = solve_motion(mechanism, positions);
+    ASSERT_EQ(motion.events.size(), 3U) << positions;
+    EXPECT_EQ(motion.events[0].kind, Kind::infinity);
+    EXPECT_NEAR(motion.events[0].time, 52.4678 * degree - start, 1e-5);
+    EXPECT_EQ(motion.events[1].kind, Kind::limit);
+    EXPECT_NEAR(motion.events[1].time, 81.052785785 * degree - start, 1e-9);
+    EXPECT_EQ(motion.events[2].kind, Kind::return_);
+    EXPECT_NEAR(motion.events[2].time, 186.833810188 * degree - start, 1e-9);
+    for (std::size_t row = 0; row < motion.times.size(); ++row) {
+      const double t = motion.times[row];
+      const bool is_open = t > motion.events[1].time && t < motion.events[2].time;
+      EXPECT_EQ(motion.configurations[row].status, is_open ? Status::open : Status::ok) << t;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace oblique::mechanism

@@ -199,7 +199,7 @@ TEST(Motion, IsRefusedWhereADriveTurnsTooOftenToBeFollowed) {
     EXPECT_EQ(error.kind(), MechanismError::Kind::request);
     EXPECT_THAT(error.what(),
                 HasSubstr("drive 'crank' turns 1.59e+08 times in the 1e+09 s of the motion; expected 10000 "
-                          "turns of the fastest drive at most"));
+                          "turns of the fastest drive at most\n  remedy: let the motion end earlier"));
   }
   // seven thousand turns are followed; the closed form's phase carries a rounding of 4e4 rad
   const double late = 7000 * 2 * std::numbers::pi + 1;

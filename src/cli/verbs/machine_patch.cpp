@@ -138,6 +138,30 @@ ExitStatus write_for_machine(const diagram::BlockLibrary& library, const PatchRe
   return ExitStatus::done;
 }
 
+/// Of a diagram that has been put onto the machine.
+ExitStatus write_scaled(const diagram::BlockLibrary& library, const PatchRequest& request,
+                        const diagram::MachineProfile& machine, const commission::DiagramOnMachine& patched,
+                        const std::string& findings) {
+  return write_for_machine(library, request, machine, patched.made.diagram,
+                           findings + report::machine_text(patched, machine),
+                           machine::scale_sheet(patched.made, machine));
+}
+
+/// A mechanism whose patch has blocks of which the machine has no element, put onto it as any diagram is:
+/// that makes what it has of sources such as a drive's law. Nothing where it cannot.
+std::optional<commission::DiagramOnMachine> as_diagram(const diagram::BlockLibrary& library,
+                                                       const diagram::MachineProfile& machine,
+                                                       const diagram::Diagram& diagram) {
+  try {
+    commission::DiagramOnMachine patched = commission::put_on_machine(diagram, library, machine);
+    const machine::ComponentList needed =
+        machine::component_list_of(diagram::flatten(patched.made.diagram, library), machine);
+    if (absent_blocks(needed).empty() && patched.failure.empty()) return patched;
+  } catch (const machine::RealiseError&) {
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void check_machine_request(const PatchRequest& request) {
@@ -159,8 +183,13 @@ ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRe
   const diagram::MachineProfile& machine = *diagram::find_machine(request.machine);
   const machine::ComponentList needed = machine::component_list_of(
       diagram::flatten(machine::realise(patched.diagram, library, machine).diagram, library), machine);
-  if (const auto absent = needed.absent(); !absent.empty() && !request.force)
-    return refuse_absent(request, machine, needed, absent);
+  if (const auto absent = needed.absent(); !absent.empty() && !request.force) {
+    const auto scaled = as_diagram(library, machine, patched.diagram);
+    if (!scaled) return refuse_absent(request, machine, needed, absent);
+    return write_scaled(library, request, machine, *scaled,
+                        fmt::format("put onto the machine as a diagram is, since it has no {}\n",
+                                    fmt::join(absent, ", no ")));
+  }
   const commission::MachinePatch on_machine =
       commission::put_on_machine(mechanism, library, machine, patched);
   const std::string told = report::bandwidth_text(on_machine, machine) +
@@ -186,9 +215,7 @@ ExitStatus patch_for_machine(const diagram::BlockLibrary& library, const PatchRe
     return refuse_absent(request, machine, needed, absent);
   if (!patched->failure.empty() && !request.force)
     return refuse_failing(request, machine, needed, patched->failure);
-  return write_for_machine(library, request, machine, patched->made.diagram,
-                           report::machine_text(*patched, machine),
-                           machine::scale_sheet(patched->made, machine));
+  return write_scaled(library, request, machine, *patched, {});
 }
 
 }  // namespace oblique::cli

@@ -14,8 +14,9 @@ namespace {
 
 /// A branch that goes on for more turns of its drive than this is not looked at to its other end.
 constexpr double kMostTurnsBack = 16;
-/// How far within its ends a branch is taken up again [rad], where both are known to 1e-11 or so.
-constexpr double kInside = 1e-9;
+/// How far within its ends a branch is taken up again [rad], where both are known to 1e-11 or so; and farther
+/// by these steps, up to this far, where its modes are not told apart yet.
+constexpr double kInside = 1e-9, kFartherInside = 10, kFarthestInside = 1e-2;
 
 /// Stands at time `t` as the straight way of the drives leads there from a place on the branch; false, and
 /// nothing is changed, where a limit lies on it.
@@ -49,10 +50,9 @@ bool enter(BranchWalk& walk, const BranchWalk::Place& from, double t) {
   return true;
 }
 
-bool come_back_alone(BranchWalk& walk, const Gap& gap, double t) {
+bool come_back_alone(BranchWalk& walk, Gap& gap, double t) {
   const std::size_t group = walk.culprit;
   const double scale = walk.mechanism.drives.front().slide ? walk.mechanism.largest_length() : 1;
-  const double inside = kInside * scale;
   const auto beyond = [&](double time) {
     walk.drives_at(time, walk.next_drives);
     return gap.outward * (walk.next_drives.front().value - gap.end);
@@ -80,12 +80,17 @@ bool come_back_alone(BranchWalk& walk, const Gap& gap, double t) {
       if (std::abs(there - here) <= kLongest * scale || dt < walk.smallest) break;
       dt /= 2;
     }
-    if (is_back(to, inside)) {
-      const double within = first_back(from, to, inside);
-      if (enter(walk, beyond(within) < 0 ? gap.behind : gap.ahead, within)) {
-        walk.events.push_back({MotionEvent::Kind::return_, first_back(from, within, 0), group});
-        return true;
-      }
+    if (!is_back(to, 0)) {
+      gap.reached.reset();
+    } else if (!gap.reached) {
+      gap.reached = first_back(from, to, 0);
+    }
+    for (double inside = kInside * scale; inside <= kFarthestInside * scale && is_back(to, inside);
+         inside *= kFartherInside) {
+      const double within = first_back(*gap.reached, to, inside);
+      if (!enter(walk, beyond(within) < 0 ? gap.behind : gap.ahead, within)) continue;
+      walk.events.push_back({MotionEvent::Kind::return_, *gap.reached, group});
+      return true;
     }
     from = to;
     here = there;
@@ -152,7 +157,9 @@ bool come_back_together(BranchWalk& walk, const Gap& gap, double t) {
 
 Gap leave_branch(BranchWalk& walk) {
   walk.time = walk.events.back().time;
-  Gap gap{walk.last_clear, {}, 0, 0, std::numeric_limits<double>::infinity()};
+  Gap gap;
+  gap.behind = walk.last_clear;
+  gap.width = std::numeric_limits<double>::infinity();
   if (walk.mechanism.drives.size() == 1) {
     walk.drives_at(walk.time, walk.next_drives);
     gap.end = walk.next_drives.front().value;
@@ -172,7 +179,7 @@ Gap leave_branch(BranchWalk& walk) {
   return gap;
 }
 
-bool come_back(BranchWalk& walk, const Gap& gap, double t) {
+bool come_back(BranchWalk& walk, Gap& gap, double t) {
   return walk.mechanism.drives.size() == 1 ? come_back_alone(walk, gap, t) : come_back_together(walk, gap, t);
 }
 

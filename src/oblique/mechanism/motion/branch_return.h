@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include <oblique/mechanism/motion/branch_walk.h>
 
 namespace oblique::mechanism {
@@ -12,6 +14,8 @@ struct Gap {
   double end = 0;            ///< of a single drive: its value where the branch was left
   double outward = 0;        ///< ±1: in which direction it lies beyond
   double width = 0;          ///< how far beyond it comes to the other end; infinite where to none
+  /// Of a single drive: since when it stands beside an end, where the branch has not been taken up yet.
+  std::optional<double> reached = {};
 };
 
 /// Finds out where the branch that has just been left at a limit goes on: of a single drive that turns, its
@@ -23,9 +27,10 @@ Gap leave_branch(BranchWalk& walk);
 ///
 /// * A single drive comes back to where it left the branch, or comes to the branch's other end. Both are
 /// known
-///   values of the drive, so the moment is found by bisection.
+///   values of the drive, so the moment is found by bisection. The branch is taken up as near to its end as
+///   its modes are told apart there.
 /// * Of several drives it is tried from degree to degree whether the straight way of all of them from where
 ///   the branch was left, by the nearest turns, is free of limits.
-bool come_back(BranchWalk& walk, const Gap& gap, double t);
+bool come_back(BranchWalk& walk, Gap& gap, double t);
 
 }  // namespace oblique::mechanism

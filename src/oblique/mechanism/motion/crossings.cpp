@@ -260,13 +260,13 @@ Crossing step_towards(BranchWalk& walk, double t) {
   // nearer to where modes meet than this no pose tells them apart, so none is taken there
   for (std::size_t g = 0; g < walk.courses.size(); ++g) {
     const BranchWalk::Course& course = walk.courses[g];
-    if (!(course.derivative * course.determinant * direction < 0)) continue;
+    const bool falls = course.derivative * course.determinant * direction < 0;
     Crossing crossing = Crossing::regular;
-    if (std::abs(course.determinant) < kSingular * course.peak) {
+    if (falls && std::abs(course.determinant) < kSingular * course.peak) {
       crossing = cross_at(walk, g, t, false);
     } else if (const GroupSolver& solver = walk.kinematics.solver(g);
                solver.is_tracked() && solver.distance(walk.here) > kFar) {
-      crossing = cross_infinity(walk, g, t);
+      crossing = cross_infinity(walk, g, t);  // where the determinant may fall or grow without end
     }
     if (crossing != Crossing::regular) return crossing;
   }
@@ -288,15 +288,17 @@ Crossing step_towards(BranchWalk& walk, double t) {
 }
 
 std::optional<MotionEvent> walk_to_limit(BranchWalk& walk, double t) {
-  walk.stops_at_infinity = true;
+  const auto ends = [&](const MotionEvent& event) {
+    return event.ends() && (walk.stops_at_infinity || event.kind != MotionEvent::Kind::infinity);
+  };
   while (walk.time != t) {
     const std::size_t before = walk.events.size();
     const Crossing crossing = step_towards(walk, t);
     if (crossing == Crossing::at_singularity || crossing == Crossing::limit) break;
-    if (walk.events.size() > before && walk.events.back().ends()) break;
+    if (walk.events.size() > before && ends(walk.events.back())) break;
   }
   for (const MotionEvent& event : walk.events) {
-    if (event.ends() && std::abs(event.time) <= std::abs(t)) return event;
+    if (ends(event) && std::abs(event.time) <= std::abs(t)) return event;
   }
   return std::nullopt;
 }

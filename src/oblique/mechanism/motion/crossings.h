@@ -33,8 +33,8 @@ enum class Crossing : std::uint8_t {
 /// Nothing is ever placed nearer to such a point than where the pose still tells the modes apart.
 Crossing step_towards(BranchWalk& walk, double t);
 
-/// Walks towards `t` to the first limit, or to infinity, and says where. The walk then stands at the last
-/// place before it.
+/// Walks towards `t` to the first limit, or to infinity where the walk stops there, and says where. The walk
+/// then stands at the last place before it.
 std::optional<MotionEvent> walk_to_limit(BranchWalk& walk, double t);
 
 }  // namespace oblique::mechanism

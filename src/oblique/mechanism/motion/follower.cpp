@@ -34,6 +34,7 @@ const Configuration& Follower::advance(double t) {
 
 std::optional<MotionEvent> Follower::advance_to_limit(double t) {
   if (!walk_.started) walk_.start();
+  walk_.stops_at_infinity = true;
   return walk_.is_open ? std::nullopt : walk_to_limit(walk_, t);
 }
 

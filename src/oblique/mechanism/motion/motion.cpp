@@ -115,8 +115,10 @@ void check_travel(const Mechanism& mechanism, double duration) {
                         duration),
             drive.slide ? fmt::format("{:.0f} times at most", kMostTurns)
                         : fmt::format("{:.0f} turns of the fastest drive at most", kMostTurns),
-            "a motion lasts one turn of the first drive: put the fastest drive first in [drives], or "
-            "bring the speeds nearer to each other"});
+            mechanism.drives.size() == 1
+                ? "let the motion end earlier, until in [motion]"
+                : "a motion lasts one turn of the first drive: put the fastest drive first in [drives], "
+                  "bring the speeds nearer to each other, or let the motion end earlier, until in [motion]"});
   }
 }
 

@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <oblique/mechanism/solver/free_turn.h>
 #include <oblique/mechanism/solver/kinematics.h>
 #include <oblique/mechanism/structure/rank.h>
 #include <oblique/mechanism/structure/structure.h>
+#include <oblique/mechanism/triad/triangle.h>
 
 namespace oblique::mechanism {
 namespace {
@@ -129,6 +131,16 @@ class ModeChooser {
       solver.place(drives_, 0, here_);
       return;
     }
+    if (const auto point = turning_point(group)) {
+      add(MechanismError::Kind::constraint, group,
+          fmt::format(
+              "{} '{}' has all its joints with the rest in one place, at '{}': it turns about it while "
+              "the drives stand still",
+              noun(group), group.name, point_name(*point)),
+          "a group with a definite place",
+          "move one of these joints to another place, or leave out a superfluous link");
+      return;
+    }
     const GroupPose hint = sketched_pose(group);
     const GroupPoses poses = solver.poses(drives_, here_, &hint);
     if (poses.movable) {
@@ -159,6 +171,14 @@ class ModeChooser {
     group.side = all[chosen].pose.side;
     group.start = all[chosen].pose;
     here_ = std::move(all[chosen].configuration);
+  }
+
+  /// The point about which a group turns while the rest stands; nothing of a dyad whose bars, of different
+  /// lengths, do not close there.
+  std::optional<std::size_t> turning_point(const Group& group) const {
+    const auto& dyad = group.form.dyad;
+    if (dyad && !(std::abs(dyad->r1 - dyad->r2) <= flat_within(dyad->r1 + dyad->r2))) return std::nullopt;
+    return free_to_turn_about(group.equations, here_);
   }
 
   /// What the rank of the conditions says of the links placed so far, where it differs from Grübler's
