@@ -69,8 +69,9 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     try {
       if (!goes_on()) break;
     } catch (const SolveError& failure) {
-      // Where the switches in it stand for no signals yet, a loop may have no solution.
-      if (failure.kind() != SolveError::Kind::singular_loop || std::exchange(has_gone, true) ||
+      // Where the switches in it stand for no signals yet, a loop may have no solution. (Nor where states
+      // that start from signals are not there yet: where it would go then says nothing.)
+      if (failure.kind() != SolveError::Kind::singular_loop || any_start || std::exchange(has_gone, true) ||
           !loop_jumps_.go_from_guesses(t, x))
         throw;
     }
