@@ -136,7 +136,8 @@ std::vector<SmallState> SmallStates::found() const {
   for (std::size_t i = 0; i < peaks_.size(); ++i) {
     if (!is_small(i) || peaks_[i] <= kAboveRounding * noise_[i]) continue;
     const auto reader = reader_of(i);
-    if (reader || (small_units && peaks_[i] > kStaysZero)) found.push_back({i, peaks_[i], reader.value_or(0)});
+    if (reader || (small_units && peaks_[i] > kStaysZero))
+      found.push_back({i, peaks_[i], reader.value_or(0)});
   }
   return found;
 }
