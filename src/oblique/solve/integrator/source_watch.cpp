@@ -182,7 +182,8 @@ SourceWatch::Hidden SourceWatch::hidden(double from, const Values& at_from, doub
 
 /// Takes the halves of a part that may hide something, as far as they are parts that may.
 void SourceWatch::part(double from, const Values& at_from, double to, const Values& at_to, int depth) {
-  if (--samples_left_ < 0) {
+  samples_left_ -= 2;  // its halves
+  if (samples_left_ < 0) {
     throw SolveError(
         SolveError::Kind::step_budget, from,
         {{file_, {}},
