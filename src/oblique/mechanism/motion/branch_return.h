@@ -25,10 +25,9 @@ Gap leave_branch(BranchWalk& walk);
 /// Goes on, open, towards `t` until the branch can be taken up again, and stands on it then; false where it
 /// stays open. There the links could have come without being taken apart:
 ///
-/// * A single drive comes back to where it left the branch, or comes to the branch's other end. Both are
-/// known
-///   values of the drive, so the moment is found by bisection. The branch is taken up as near to its end as
-///   its modes are told apart there.
+/// * A single drive comes back to where it left the branch, or comes to the branch's other end. Both
+///   are known values of the drive, so the moment is found by bisection. The branch is taken up as near
+///   to its end as its modes are told apart there.
 /// * Of several drives it is tried from degree to degree whether the straight way of all of them from where
 ///   the branch was left, by the nearest turns, is free of limits.
 bool come_back(BranchWalk& walk, Gap& gap, double t);
