@@ -13,6 +13,7 @@
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/draw/chart/chart.h>
 #include <oblique/text/file.h>
+#include <oblique/text/trimmed.h>
 #include "terminal/output_files.h"
 #include "terminal/plot_output.h"
 #include "terminal/terminal.h"
@@ -33,12 +34,6 @@ constexpr const char* kCommands =
     "save FILE.toml, restore FILE.toml  keep the state, and go back to it\n"
     "quit\n";
 
-std::string trimmed_line(std::string_view text) {
-  const auto from = text.find_first_not_of(" \t\r");
-  if (from == std::string_view::npos) return {};
-  return std::string(text.substr(from, text.find_last_not_of(" \t\r") + 1 - from));
-}
-
 /// A machine that obeys lines of text.
 class Operator {
  public:
@@ -48,9 +43,9 @@ class Operator {
 
   /// Whether there is more to do after this line. Throws text::Error.
   bool obey(const std::string& line) {
-    const std::string text = trimmed_line(line.substr(0, line.find('#')));
+    const std::string text = text::trimmed(line.substr(0, line.find('#')));
     const std::size_t space = std::min(text.find_first_of(" \t"), text.size());
-    const std::string verb = text.substr(0, space), rest = trimmed_line(text.substr(space));
+    const std::string verb = text.substr(0, space), rest = text::trimmed(text.substr(space));
     if (verb.empty()) return true;
     if (verb == "quit") return expect_nothing(verb, rest), false;
     if (verb == "ic" || verb == "operate" || verb == "hold") {
@@ -66,8 +61,8 @@ class Operator {
                                                fmt::format("'rep-op {}' names one time", times),
                                                "rep-op INITIAL, OPERATE",
                                                "rep-op 100 ms, 2 s"});
-      console_.repeat(quantity_option("rep-op", trimmed_line(times.substr(0, comma)), "s"),
-                      quantity_option("rep-op", trimmed_line(times.substr(comma + 1)), "s"));
+      console_.repeat(quantity_option("rep-op", text::trimmed(times.substr(0, comma)), "s"),
+                      quantity_option("rep-op", text::trimmed(times.substr(comma + 1)), "s"));
     } else if (verb == "advance") {
       advance(quantity_option("advance", needed(verb, rest, "TIME"), "s"));
     } else if (verb == "turn") {
@@ -126,7 +121,7 @@ class Operator {
                                              fmt::format("'read {}' shows what it is", rest)});
     }
     const std::string pot = rest.substr(0, space);
-    if (console_.turn(pot, trimmed_line(rest.substr(space))) == console::Turned::compiled_anew)
+    if (console_.turn(pot, text::trimmed(rest.substr(space))) == console::Turned::compiled_anew)
       note(fmt::format("turned '{}' by compiling anew\n", pot));
   }
 
@@ -134,7 +129,7 @@ class Operator {
     std::vector<std::string> probes;
     std::istringstream list(names);
     for (std::string name; std::getline(list, name, ',');) {
-      probes.push_back(trimmed_line(name));
+      probes.push_back(text::trimmed(name));
       console_.read(probes.back());
     }
     probes_ = std::move(probes);

@@ -12,6 +12,7 @@
 #include <oblique/report/study/study_text.h>
 #include <oblique/text/file.h>
 #include <oblique/text/quantity.h>
+#include <oblique/text/trimmed.h>
 #include "terminal/output_files.h"
 #include "terminal/picture_output.h"
 #include "terminal/plot_output.h"
@@ -27,12 +28,6 @@ namespace {
   throw text::ReadError(text::Diagnostic{{}, std::move(what), std::move(expected), std::move(remedy)});
 }
 
-std::string trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(' ');
-  if (begin == std::string_view::npos) return {};
-  return std::string(text.substr(begin, text.find_last_not_of(' ') + 1 - begin));
-}
-
 /// The place of what an option says.
 text::Place option(const char* name, const std::string& value) {
   return {{}, {}, {name, value}};
@@ -43,7 +38,8 @@ ensemble::Variation variation_of(const std::string& text) {
   if (equals == std::string::npos || equals == 0)
     refuse(fmt::format("--vary {}: this varies nothing", text), "NAME=VALUES",
            "for example --vary c.gain=1e2..1e6:5:log");
-  return {trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1)), option("vary", text)};
+  return {text::trimmed(text.substr(0, equals)), text::trimmed(text.substr(equals + 1)),
+          option("vary", text)};
 }
 
 /// "NAME = EXPRESSION", or the expression alone.
@@ -53,8 +49,8 @@ ensemble::Measure measure_of(const std::string& text) {
                              std::string_view("<>!").find(text[equals - 1]) != std::string_view::npos ||
                              text.substr(0, equals).find('(') != std::string::npos;
   const text::Place place = option("measure", text);
-  if (is_comparison) return {trimmed(text), text, place};
-  return {trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1)), place};
+  if (is_comparison) return {text::trimmed(text), text, place};
+  return {text::trimmed(text.substr(0, equals)), text::trimmed(text.substr(equals + 1)), place};
 }
 
 ensemble::Scattered scattered_of(const std::string& text, const diagram::BlockLibrary& library) {
@@ -62,11 +58,12 @@ ensemble::Scattered scattered_of(const std::string& text, const diagram::BlockLi
   if (equals == std::string::npos || dot == std::string::npos)
     refuse(fmt::format("--scatter {}: nothing scatters", text), "TYPE.PARAMETER=±HALF-WIDTH",
            "for example --scatter multiplier.error=0.1%");
-  ensemble::Scattered scattered{trimmed(text.substr(0, dot)), trimmed(text.substr(dot + 1, equals - dot - 1)),
-                                0, option("scatter", text)};
-  std::string width = trimmed(text.substr(equals + 1));
+  ensemble::Scattered scattered{text::trimmed(text.substr(0, dot)),
+                                text::trimmed(text.substr(dot + 1, equals - dot - 1)), 0,
+                                option("scatter", text)};
+  std::string width = text::trimmed(text.substr(equals + 1));
   for (const std::string_view sign : {"±", "+-", "+/-"}) {
-    if (width.starts_with(sign)) width = trimmed(width.substr(sign.size()));
+    if (width.starts_with(sign)) width = text::trimmed(width.substr(sign.size()));
   }
   text::Unit unit;
   if (const diagram::BlockDefinition* const definition = library.find(scattered.block)) {

@@ -9,17 +9,10 @@
 #include <oblique/text/encoding.h>
 #include <oblique/text/expression_grammar.h>
 #include <oblique/text/quantity.h>
+#include <oblique/text/trimmed.h>
 
 namespace oblique::text {
 namespace {
-
-constexpr std::string_view kSpace = " \t\r\x1a";  // with the end of a DOS file
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
 
 struct Cell {
   std::string text;

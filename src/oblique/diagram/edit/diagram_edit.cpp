@@ -13,6 +13,7 @@
 #include <oblique/diagram/names.h>
 #include <oblique/text/toml_edit.h>
 #include <oblique/text/toml_text.h>
+#include <oblique/text/trimmed.h>
 
 namespace oblique::diagram {
 namespace {
@@ -21,12 +22,6 @@ using text::TomlChange;
 using text::TomlPath;
 using text::Value;
 using Changes = std::vector<TomlChange>;
-
-std::string trimmed_value(std::string_view value) {
-  const auto first = value.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return std::string(value.substr(first, value.find_last_not_of(" \t\r\n") - first + 1));
-}
 
 /// Renames a block in all strings of a value.
 void rename_in(const Value& value, const TomlPath& path, const std::string& block, const std::string& name,
@@ -251,7 +246,7 @@ void DiagramEdit::weigh(const std::string& block, const std::string& port, std::
 void DiagramEdit::set(const std::string& block, const std::string& key, const std::string& value) {
   const EditedText content(text_, file_, *library_);
   const Value& found = content.block(block);
-  const std::string written = trimmed_value(value);
+  const std::string written = text::trimmed(value);
   if (written.empty()) {
     if (found.find(key) != nullptr)
       text_ = text::edit_toml(text_, file_, {{TomlChange::Kind::remove, {"blocks", block, key}, {}}});
@@ -269,7 +264,7 @@ void DiagramEdit::set_head(const std::string& path, const std::string& value) {
   TomlPath entry;
   if (dot != std::string::npos) entry.emplace_back(path.substr(0, dot));
   entry.emplace_back(dot == std::string::npos ? path : path.substr(dot + 1));
-  const std::string written = trimmed_value(value);
+  const std::string written = text::trimmed(value);
   const text::Document document = text::parse_document(text_, file_);
   const Value* const table =
       dot == std::string::npos ? &document.root : document.root.find(path.substr(0, dot));

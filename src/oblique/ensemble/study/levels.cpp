@@ -10,6 +10,7 @@
 
 #include <oblique/text/expression.h>
 #include <oblique/text/nearest_decimal.h>
+#include <oblique/text/trimmed.h>
 
 namespace oblique::ensemble {
 namespace {
@@ -18,12 +19,6 @@ constexpr std::size_t kMostValues = 1'000'000;
 
 [[noreturn]] void fail(std::string what, std::string expected = {}, std::string remedy = {}) {
   throw text::ExpressionError{0, std::move(what), std::move(expected), std::move(remedy)};
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
 }
 
 /// The parts between separators that stand in no parenthesis.
@@ -35,7 +30,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
     if (k < text.size() && text[k] == '(') ++depth;
     if (k < text.size() && text[k] == ')') --depth;
     if (k < text.size() && (text[k] != separator || depth > 0)) continue;
-    parts.push_back(trimmed(text.substr(begin, k - begin)));
+    parts.push_back(text::trimmed(text.substr(begin, k - begin)));
     begin = k + 1;
   }
   return parts;
@@ -79,8 +74,8 @@ Range range_of(std::string_view text, const text::Unit& unit) {
   if (dots == std::string_view::npos)
     fail(fmt::format("'{}' has a ':' and no range before it", text), "from..to:values");
   Range range;
-  range.from = value_of(trimmed(parts[0].substr(0, dots)), unit);
-  range.to = value_of(trimmed(parts[0].substr(dots + 2)), unit);
+  range.from = value_of(text::trimmed(parts[0].substr(0, dots)), unit);
+  range.to = value_of(text::trimmed(parts[0].substr(dots + 2)), unit);
   for (std::size_t k = 1; k < parts.size(); ++k) {
     const auto count = count_of(parts[k]);
     if (parts[k] == "log" && !range.logarithmic) {
@@ -110,7 +105,7 @@ Range range_of(std::string_view text, const text::Unit& unit) {
 
 Levels::Levels(std::string_view text, const text::Unit& unit) {
   const std::vector<std::string_view> parts = split(text, ',');
-  if (trimmed(text).empty())
+  if (text::trimmed(text).empty())
     fail("there are no values", "a list such as 1,2,5, or a range such as 0.8..1.2:9");
   for (const std::string_view part : parts) {
     if (part.empty()) fail(fmt::format("'{}' has a comma and no value beside it", text), "a value");
