@@ -15,9 +15,6 @@
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/diagram_writer.h>
 #include <oblique/diagram/flatten.h>
-#include <oblique/draw/linkage/linkage.h>
-#include <oblique/draw/picture/svg.h>
-#include <oblique/draw/schematic/diagram_drawing.h>
 #include <oblique/mechanism/model/read_mechanism.h>
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/mechanism/structure/structure.h>
@@ -25,10 +22,11 @@
 #include <oblique/network/program/program.h>
 #include <oblique/report/file_kind.h>
 #include <oblique/report/judgement_text.h>
-#include <oblique/report/linkage_scene.h>
 #include <oblique/report/motion_text.h>
 #include <oblique/solve/run.h>
 
+#include "studio/engine/description.h"
+#include "studio/engine/drawn.h"
 #include "studio/engine/lesson.h"
 #include "studio/engine/options.h"
 #include "studio/engine/patch_request.h"
@@ -97,72 +95,6 @@ class Deadline {
   bool passed_ = false;
 };
 
-draw::Theme theme_of(const Options& options) {
-  const std::string theme = options.word("theme").value_or("auto");
-  if (theme == "auto") return draw::Theme::automatic;
-  if (theme == "light") return draw::Theme::light;
-  if (theme == "dark") return draw::Theme::dark;
-  refuse_file({}, fmt::format("'theme' is '{}'", theme), "auto, light or dark");
-}
-
-std::string drawn_diagram(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
-                          const Options& options) {
-  constexpr int kDeepest = 100;
-  draw::DiagramDrawing drawing;
-  const std::string symbols = options.word("symbols").value_or("classic");
-  if (symbols != "classic" && symbols != "din")
-    refuse_file({}, fmt::format("'symbols' is '{}'", symbols), "classic or din");
-  if (symbols == "din") drawing.symbols = draw::SymbolStyle::din;
-  drawing.depth = options.whole("depth", 0, kDeepest).value_or(0);
-  return draw::to_svg(draw::draw_diagram(diagram, library, drawing), theme_of(options), 1,
-                      options.flag("data"));
-}
-
-std::string drawn_mechanism(const mechanism::Mechanism& mechanism, const Options& options) {
-  constexpr int kMostPositions = 100;
-  const std::vector<std::size_t> traces = report::traced_points(mechanism, {});
-  report::TimedScene timed = report::linkage_scene(mechanism, options.quantity("time", "s").value_or(0),
-                                                   options.whole("positions", 1, kMostPositions).value_or(1));
-  if (!timed.scene.motion.empty()) timed.scene.traces = traces;
-  return draw::to_svg(draw::draw_linkage(mechanism, timed.scene), theme_of(options));
-}
-
-Json description_of(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
-  const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
-  const network::Program program(network::assemble(flat));
-  Json json;
-  json["kind"] = "diagram";
-  json["title"] = diagram.title;
-  json["until"] = diagram.run.until;
-  json["machine"] = diagram.machine.profile;
-  json["blocks"] = Json::array();
-  for (const diagram::BlockInstance& block : diagram.blocks)
-    json["blocks"].push_back({{"name", block.name}, {"type", block.type}});
-  json["outputs"] = Json::array();
-  for (const diagram::FlatOutput& output : flat.outputs)
-    json["outputs"].push_back({{"name", output.name}, {"unit", output.unit}});
-  json["signals"] = program.signal_names();
-  json["lesson"] = diagram.lesson ? lesson_of(*diagram.lesson) : Json();
-  return json;
-}
-
-Json description_of(const mechanism::Mechanism& mechanism) {
-  Json json;
-  json["kind"] = "mechanism";
-  json["title"] = mechanism.title;
-  json["unit"] = mechanism.length_unit;
-  json["points"] = mechanism::names_of(mechanism.points);
-  json["bodies"] = mechanism::names_of(mechanism.bodies);
-  json["drives"] = Json::array();
-  for (const mechanism::Drive& drive : mechanism.drives)
-    json["drives"].push_back({{"name", drive.name}, {"slide", drive.slide.has_value()}});
-  json["groups"] = Json::array();
-  if (mechanism.drives.empty()) return json;  // a structure, which nothing moves
-  for (const mechanism::Group& group : mechanism::decompose(mechanism).groups)
-    json["groups"].push_back({{"name", group.name}, {"class", group.assur_class}});
-  return json;
-}
-
 }  // namespace
 
 const char* event_name(mechanism::MotionEvent::Kind kind) {
@@ -223,11 +155,7 @@ Answer Engine::put_block(const std::string& name, const std::string& text) {
 Answer Engine::open(const std::string& text, const std::string& name) const {
   return answer([&] {
     check_size(text, name);
-    Answer read;
-    read.object = report::kind_of_file(text, name) == FileKind::diagram
-                      ? description_of(diagram::parse_diagram(text, name), *library_)
-                      : description_of(mechanism::parse_mechanism(text, name));
-    return read;
+    return Answer{description_of(text, name, *library_), {}};
   });
 }
 
@@ -375,15 +303,7 @@ Answer Engine::motion(const std::string& text, const std::string& name, const st
 Answer Engine::draw(const std::string& text, const std::string& name, const std::string& options) const {
   return answer([&] {
     check_size(text, name);
-    Answer drawn;
-    if (report::kind_of_file(text, name) == FileKind::diagram) {
-      drawn.object["svg"] = drawn_diagram(diagram::parse_diagram(text, name), *library_,
-                                          Options(options, {"theme", "symbols", "depth", "data"}));
-    } else {
-      drawn.object["svg"] = drawn_mechanism(mechanism::parse_mechanism(text, name),
-                                            Options(options, {"theme", "time", "positions"}));
-    }
-    return drawn;
+    return Answer{drawn(text, name, *library_, options), {}};
   });
 }
 
