@@ -179,6 +179,19 @@ TEST(SmallStates, AreKnownWhereAnOutputShowsThem) {
   }
 }
 
+// Metres beside metres a second: x = a cos ωt with a = 5e-6 beside v = x′ of 0.5, is known beside its own
+// size, to the tolerance of the run: four times worse without an absolute tolerance of its own.
+TEST(SmallStates, AreKnownWhereAnOutputStandsInSmallUnits) {
+  const oblique::solve::Run result =
+      run_of(Compiled("v = { type = \"integrator\", in = \"-1e10*x\" }\n"
+                      "x = { type = \"integrator\", in = \"v\", initial = 5e-6 }\n",
+                      "[outputs]\nx = \"x\"\n"),
+             {.until = 2e-4});
+  const auto t = row_values(result, "t"), x = row_values(result, "x");
+  for (std::size_t k = 0; k < t.size(); ++k)
+    EXPECT_NEAR(x[k], 5e-6 * std::cos(1e5 * t[k]), 5e-6 * 1e-8) << t[k];
+}
+
 TEST(SmallStates, AreLeftAloneWhereNothingShowsThem) {
   const oblique::solve::Run shown = run_of(Compiled(small_oscillator("1e-15", "1"), kShowY), {.until = 30});
   EXPECT_TRUE(shown.warnings.empty());

@@ -21,6 +21,9 @@ constexpr double kMuch = 1e4;
 /// by far more than what they are rates of.)
 constexpr double kMuchOfEventFunction = 1e-2;
 
+/// The same of an output that stands in small units beside larger states, times its own size.
+constexpr double kMuchOfSmallOutput = 1e2;
+
 /// A diagram that nowhere comes to so much stands in small units; less than the second is nothing in any
 /// [machine unit].
 constexpr double kSmallUnit = 1e-4, kStaysZero = 1e-13;
@@ -121,8 +124,10 @@ std::optional<std::size_t> SmallStates::reader_of(std::size_t state) const {
   const auto moves = moves_.find(state);
   if (moves == moves_.end()) return std::nullopt;
   for (std::size_t k = 0; k < sizes_.size(); ++k) {
-    const double much =
-        k < n_relative_ ? kMuch * tolerance_ * std::max(1.0, sizes_[k]) : kMuchOfEventFunction * sizes_[k];
+    const bool shows_small = sizes_[k] > kStaysZero && sizes_[k] < kSmallUnit;
+    const double much = k >= n_relative_ ? kMuchOfEventFunction * sizes_[k]
+                        : shows_small    ? kMuchOfSmallOutput * tolerance_ * sizes_[k]
+                                         : kMuch * tolerance_ * std::max(1.0, sizes_[k]);
     if (much > 0 && moves->second[k] > much) return k;
   }
   return std::nullopt;

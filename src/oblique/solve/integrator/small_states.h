@@ -26,7 +26,8 @@ struct SmallState {
 /// their units, and the event functions of switches beside their own size. States that are no more than the
 /// rounding of what they integrate are not told of: nothing would make them known. Where all states of a
 /// diagram are below 1e-4 it stands in small units (amperes of a nerve), and all above 1e-13 matter, but for
-/// slides, which hold states at zero to within errors. Not installed.
+/// slides, which hold states at zero to within errors. An output that stays between these (the radius of a
+/// bubble in metres, beside its speed) is to be known beside its own size. Not installed.
 class SmallStates {
  public:
   /// Gives `n_readings` values at (t, x), false where they have none; those from `n_relative` on matter
