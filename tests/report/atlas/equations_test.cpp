@@ -110,6 +110,16 @@ s = { type = "step", at = 2, from = 1, to = 3 }
       ElementsAre("der(X) = -20*y, from 10", "der(y) = 0.1*X, from 0.5",
                   "l = if(0.3*X - y > 0.2, 0.2, if(y - 0.3*X > 0.1, -0.1, 0.3*X - y))",
                   "m = if(y - 0.1*X > 0, y, 0.1*X)", "s = if(t >= 2, 3, 1)"));
+  // what a comparator switches elsewhere is told by what the comparator compares
+  EXPECT_THAT(equations(R"toml(x = { type = "integrator", in = ["f"], initial = 1 }
+h = { type = "constant", value = 0.5 }
+c = { type = "comparator", in = ["x", "h"] }
+d = { type = "comparator", in = ["x"], low = 1, high = -1 }
+f = { type = "electronic-switch", on = "x", off = "h", control = "c" }
+g = { type = "electronic-switch", on = "x", off = "h", control = "d", threshold = 0 }
+)toml",
+                        "[outputs]\nx = \"x\"\ng = \"g\"\n"),
+              ElementsAre("der(x) = if(x > -0.5, x, 0.5), from 1", "g = if(x <= 0, x, 0.5)"));
   // a comparator that its own output holds: what it compares cannot be written out without end
   EXPECT_THAT(
       equations("x = { type = \"integrator\", in = [\"c\"], initial = 1 }\nc = { type = \"comparator\", "

@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <optional>
 #include <set>
-#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <oblique/network/assembly/network.h>
+#include <oblique/report/atlas/equation_names.h>
+#include <oblique/report/atlas/printed_sum.h>
 
 namespace oblique::report {
 namespace {
@@ -22,182 +21,54 @@ using network::Node;
 using network::NodeId;
 using network::Op;
 
-/// Leaves of what stands in place where it is used several times; more than that has an equation of its own.
-constexpr double kShortLeaves = 3;
-
-/// Leaves beyond which a signal has an equation of its own though it is used once.
-constexpr double kLongLeaves = 24;
-
-/// A term of a sum: a number times factors over divisors, each as it is printed.
-struct Monomial {
-  double coefficient = 1;
-  std::vector<std::string> factors, divisors;
-};
-
-/// A quantity of the circuit: `factor` times what is called `name`.
-struct Quantity {
-  std::string name;
-  double factor = 1;
-};
-
 class EquationReader {
  public:
   EquationReader(const diagram::FlatDiagram& diagram, int digits)
-      : network_(network::assemble(diagram)), digits_(digits) {
-    name_variables(diagram);
-    name_signals();
-    count_leaves_and_uses(diagram);
-    outputs(diagram);
+      : network_(network::assemble(diagram)), names_(name_equations(network_, diagram)), digits_(digits) {
+    for (const NodeId id : names_.apart_outputs) ask(id);
   }
 
   std::vector<RecoveredEquation> read() {
     std::vector<RecoveredEquation> equations;
     for (std::size_t s = 0; s < network_.states.size(); ++s) {
       const network::State& state = network_.states[s];
-      const Quantity& x = variables_[network_.state_variable(s)];
+      const Quantity& x = names_.variables[network_.state_variable(s)];
       const bool known = !state.start_node || state.start_constant;
-      equations.push_back({fmt::format("der({})", x.name), sum_text(scaled(state.derivative, 1 / x.factor)),
-                           known ? number(state.start / x.factor) : ""});
+      equations.push_back({fmt::format("der({})", x.name), text_of(state.derivative, 1 / x.factor),
+                           known ? number_text(state.start / x.factor, digits_) : ""});
     }
     for (std::size_t u = 0; u < network_.unknowns.size(); ++u) {
       const network::Unknown& unknown = network_.unknowns[u];
-      const Quantity& z = variables_[network_.unknown_variable(u)];
+      const Quantity& z = names_.variables[network_.unknown_variable(u)];
       std::vector<Monomial> terms = scaled(unknown.residual, 1 / z.factor);
       if (unknown.torn)
         terms.push_back({1, {z.name}, {}});  // the residual is what the block gives less itself
-      equations.push_back(
-          {unknown.torn ? z.name : "0", sum_text(merged(std::move(terms))), "", unknown.torn ? "" : z.name});
+      equations.push_back({unknown.torn ? z.name : "0", sum_text(merged(std::move(terms)), digits_), "",
+                           unknown.torn ? "" : z.name});
     }
-    for (const auto& [name, node, scale, offset] : outputs_) {
-      const bool own = apart_.contains(node);
-      if (own) apart_.erase(node);
+    for (const auto& [name, node, scale, offset] : names_.other_outputs) {
+      const bool own = names_.apart.contains(node);
+      if (own) names_.apart.erase(node);
       std::vector<Monomial> terms = scaled(node, scale);
-      if (own) apart_.insert(node);
+      if (own) names_.apart.insert(node);
       if (offset != 0) terms.push_back({offset, {}, {}});
-      equations.push_back({name, sum_text(terms), ""});
+      equations.push_back({name, sum_text(terms, digits_), ""});
     }
     while (next_ < queue_.size()) {
       const NodeId node = queue_[next_++];
-      apart_.erase(node);
-      equations.push_back({names_.at(node).name, sum_text(scaled(node, 1 / names_.at(node).factor)), ""});
-      apart_.insert(node);
+      names_.apart.erase(node);
+      equations.push_back(
+          {names_.signals.at(node).name, text_of(node, 1 / names_.signals.at(node).factor), ""});
+      names_.apart.insert(node);
     }
     return equations;
   }
 
  private:
-  struct Output {
-    std::string name;
-    NodeId node;
-    double scale, offset;
-  };
-
-  /// Time, states, unknowns; by the outputs that show them.
-  void name_variables(const diagram::FlatDiagram& diagram) {
-    variables_.push_back({"t", 1});
-    for (const network::State& state : network_.states) variables_.push_back({state.name, 1});
-    for (const network::Unknown& unknown : network_.unknowns) variables_.push_back({unknown.name, 1});
-    std::set<std::size_t> shown;
-    for (const diagram::FlatOutput& output : diagram.outputs) {
-      const auto part = multiple_of_variable(node_of(output));
-      if (!part || part->factor * output.scale == 0 || output.offset != 0) continue;
-      if (shown.insert(part->variable).second)
-        variables_[part->variable] = {output.name, 1 / (part->factor * output.scale)};
-    }
+  /// Gives what stands apart its equation.
+  void ask(NodeId id) {
+    if (asked_.insert(id).second) queue_.push_back(id);
   }
-
-  struct Multiple {
-    std::size_t variable;
-    double factor;
-  };
-
-  /// What is a number times a state or an unknown, as behind inverters and coefficients.
-  std::optional<Multiple> multiple_of_variable(NodeId id) const {
-    double factor = 1;
-    for (;;) {
-      const Node& node = network_.graph[id];
-      const auto value = [&](NodeId operand) { return network_.graph[operand].value; };
-      if (node.op == Op::variable && node.variable != 0) return Multiple{node.variable, factor};
-      if (node.op == Op::negate) {
-        factor = -factor;
-        id = node.a;
-      } else if (node.op == Op::multiply && network_.graph.is_constant(node.a)) {
-        factor *= value(node.a);
-        id = node.b;
-      } else if ((node.op == Op::multiply || node.op == Op::divide) && network_.graph.is_constant(node.b)) {
-        factor = node.op == Op::divide ? factor / value(node.b) : factor * value(node.b);
-        id = node.a;
-      } else {
-        return std::nullopt;
-      }
-    }
-  }
-
-  NodeId node_of(const diagram::FlatOutput& output) const {
-    return network_.signals[network_.signal_index(output.signal)];
-  }
-
-  /// Signals that are no variables, by the blocks that make them.
-  void name_signals() {
-    for (std::size_t s = 0; s < network_.signals.size(); ++s) {
-      const Op op = network_.graph[network_.signals[s]].op;
-      if (op != Op::variable && op != Op::constant && op != Op::discrete_state)
-        names_.emplace(network_.signals[s], Quantity{network_.signal_names[s], 1});
-    }
-  }
-
-  /// What stands apart, in an equation of its own.
-  void count_leaves_and_uses(const diagram::FlatDiagram& diagram) {
-    std::vector<NodeId> roots;
-    for (const network::State& state : network_.states) roots.push_back(state.derivative);
-    for (const network::Unknown& unknown : network_.unknowns) roots.push_back(unknown.residual);
-    for (const diagram::FlatOutput& output : diagram.outputs) roots.push_back(node_of(output));
-    std::vector<int> uses(network_.graph.size(), 0);
-    std::vector<bool> reached(network_.graph.size(), false);
-    for (const NodeId root : roots) reached[root] = true;
-    for (auto id = static_cast<NodeId>(network_.graph.size()); id-- > 0;) {
-      if (!reached[id]) continue;
-      const Node& node = network_.graph[id];
-      for (int k = 0; k < network::operand_count(node.op); ++k) {
-        reached[node.operand(k)] = true;
-        ++uses[node.operand(k)];
-      }
-    }
-    std::vector<double> leaves(network_.graph.size(), 1);
-    for (NodeId id = 0; id < network_.graph.size(); ++id) {
-      if (!reached[id]) continue;
-      const Node& node = network_.graph[id];
-      double sum = 0;
-      for (int k = 0; k < network::operand_count(node.op); ++k) {
-        if (network_.graph[node.operand(k)].op != Op::constant) sum += leaves[node.operand(k)];
-      }
-      leaves[id] = std::max(1.0, sum);
-      const bool long_enough = uses[id] > 1 ? leaves[id] > kShortLeaves : leaves[id] > kLongLeaves;
-      if (!names_.contains(id) && uses[id] > 1 && leaves[id] > kLongLeaves)
-        names_.emplace(id, Quantity{fmt::format("u{}", ++unnamed_), 1});
-      if (!names_.contains(id) || !long_enough) continue;
-      apart_.insert(id);
-      leaves[id] = 1;
-    }
-  }
-
-  /// Outputs that show no variable by itself; the first of a signal gives it its name.
-  void outputs(const diagram::FlatDiagram& diagram) {
-    for (const diagram::FlatOutput& output : diagram.outputs) {
-      const NodeId id = node_of(output);
-      if (const auto part = multiple_of_variable(id);
-          part && output.offset == 0 && variables_[part->variable].name == output.name)
-        continue;
-      if (apart_.contains(id) && output.offset == 0 && output.scale != 0 && asked_.insert(id).second) {
-        names_.at(id) = {output.name, 1 / output.scale};
-        queue_.push_back(id);
-      } else {
-        outputs_.push_back({output.name, id, output.scale, output.offset});
-      }
-    }
-  }
-
-  std::string number(double value) const { return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, digits_); }
 
   /// What a condition compares: "x - 3*y > 0.2".
   std::string condition_text(NodeId id) {
@@ -216,6 +87,13 @@ class EquationReader {
         [&](const network::Switch& candidate) { return candidate.discrete_state == discrete_state; });
     if (found == network_.switches.end() || !open_.insert(discrete_state).second)
       return network_.discrete_states[discrete_state].name;
+    // A level that another comparison makes is that comparison, or its contrary.
+    if (const auto choice = choice_of(found->event_function);
+        choice && (choice->high > 0) != (choice->low > 0)) {
+      std::string text = switch_text(choice->discrete_state, holds == (choice->high > 0));
+      open_.erase(discrete_state);
+      return text;
+    }
     std::vector<Monomial> terms = scaled(found->event_function, 1);
     open_.erase(discrete_state);
     double level = 0;
@@ -231,7 +109,30 @@ class EquationReader {
       for (Monomial& term : terms) term.coefficient = -term.coefficient;
     }
     const char* const relation = turned ? (holds ? "<" : ">=") : (holds ? ">" : "<=");
-    return fmt::format("{} {} {}", sum_text(terms), relation, number(level));
+    return fmt::format("{} {} {}", sum_text(terms, digits_), relation, number_text(level, digits_));
+  }
+
+  /// One of two numbers, as a switch stands.
+  struct Choice {
+    std::uint32_t discrete_state;
+    double high, low;
+  };
+
+  std::optional<Choice> choice_of(NodeId id) const {
+    const Node& node = network_.graph[id];
+    const auto is_number = [&](NodeId operand) { return network_.graph.is_constant(operand); };
+    const auto value = [&](NodeId operand) { return network_.graph[operand].value; };
+    if (node.op == Op::select && network_.graph[node.a].op == Op::discrete_state && is_number(node.b) &&
+        is_number(node.c))
+      return Choice{network_.graph[node.a].variable, value(node.b), value(node.c)};
+    if ((node.op != Op::add && node.op != Op::subtract) || is_number(node.a) == is_number(node.b))
+      return std::nullopt;
+    auto choice = choice_of(is_number(node.a) ? node.b : node.a);
+    if (!choice) return std::nullopt;
+    for (double* const level : {&choice->high, &choice->low})
+      *level = network::evaluate(node.op, is_number(node.a) ? value(node.a) : *level,
+                                 is_number(node.b) ? value(node.b) : *level);
+    return choice;
   }
 
   std::string call(std::string_view name, const Node& node) {
@@ -271,26 +172,26 @@ class EquationReader {
     const Monomial base = monomial(node.a);
     const bool whole = exponent.op == Op::constant && exponent.value == std::floor(exponent.value);
     if (whole && base.factors.size() == 1 && base.divisors.empty())
-      return {
-          std::pow(base.coefficient, exponent.value),
-          {fmt::format("{}^{}", base.factors.front(),
-                       exponent.value < 0 ? fmt::format("({})", exponent.value) : number(exponent.value))},
-          {}};
+      return {std::pow(base.coefficient, exponent.value),
+              {fmt::format("{}^{}", base.factors.front(),
+                           exponent.value < 0 ? fmt::format("({})", exponent.value)
+                                              : number_text(exponent.value, digits_))},
+              {}};
     return {1, {fmt::format("({})^({})", node_text(node.a), node_text(node.b))}, {}};
   }
 
   /// A node as one term; a sum of several stands in parentheses.
   Monomial monomial(NodeId id) {
     const Node& node = network_.graph[id];
-    if (apart_.contains(id)) {
-      if (asked_.insert(id).second) queue_.push_back(id);
-      return {names_.at(id).factor, {names_.at(id).name}, {}};
+    if (names_.apart.contains(id)) {
+      ask(id);
+      return {names_.signals.at(id).factor, {names_.signals.at(id).name}, {}};
     }
     switch (node.op) {
       case Op::constant:
         return {node.value, {}, {}};
       case Op::variable:
-        return {variables_[node.variable].factor, {variables_[node.variable].name}, {}};
+        return {names_.variables[node.variable].factor, {names_.variables[node.variable].name}, {}};
       case Op::multiply:
       case Op::divide: {
         Monomial product = monomial(node.a);
@@ -310,7 +211,7 @@ class EquationReader {
         std::vector<Monomial> terms = scaled(id, 1);
         if (terms.empty()) return {0, {}, {}};
         if (terms.size() == 1) return std::move(terms.front());
-        return {1, {"(" + sum_text(terms) + ")"}, {}};
+        return {1, {"(" + sum_text(terms, digits_) + ")"}, {}};
       }
       case Op::power:
         return power(node);
@@ -321,7 +222,7 @@ class EquationReader {
 
   void add_terms(NodeId id, double coefficient, std::vector<Monomial>& terms) {
     const Node& node = network_.graph[id];
-    const bool open = !apart_.contains(id);
+    const bool open = !names_.apart.contains(id);
     if (open && (node.op == Op::add || node.op == Op::subtract)) {
       add_terms(node.a, coefficient, terms);
       add_terms(node.b, node.op == Op::add ? coefficient : -coefficient, terms);
@@ -347,84 +248,17 @@ class EquationReader {
     return merged(std::move(terms));
   }
 
-  static std::vector<Monomial> merged(std::vector<Monomial> terms) {
-    std::vector<Monomial> kept;
-    std::map<std::pair<std::vector<std::string>, std::vector<std::string>>, std::size_t> places;
-    for (Monomial& term : terms) {
-      auto key = std::pair(term.factors, term.divisors);
-      std::sort(key.first.begin(), key.first.end());
-      std::sort(key.second.begin(), key.second.end());
-      const auto [place, is_new] = places.emplace(std::move(key), kept.size());
-      if (is_new) {
-        kept.push_back(std::move(term));
-      } else {
-        kept[place->second].coefficient += term.coefficient;
-      }
-    }
-    std::erase_if(kept, [](const Monomial& term) { return term.coefficient == 0; });
-    in_reading_order(kept);
-    return kept;
-  }
+  std::string text_of(NodeId id, double scale) { return sum_text(scaled(id, scale), digits_); }
 
-  /// Short products first and numbers last; none with a minus at the head of a sum, if another can be there.
-  static void in_reading_order(std::vector<Monomial>& terms) {
-    const auto rank = [](const Monomial& term) {
-      const std::size_t n = term.factors.size() + term.divisors.size();
-      return std::pair(n == 0 ? std::numeric_limits<std::size_t>::max() : n, std::signbit(term.coefficient));
-    };
-    std::stable_sort(terms.begin(), terms.end(),
-                     [&](const Monomial& a, const Monomial& b) { return rank(a) < rank(b); });
-    const auto plus = std::find_if(terms.begin(), terms.end(),
-                                   [](const Monomial& term) { return !std::signbit(term.coefficient); });
-    if (plus != terms.end()) std::rotate(terms.begin(), plus, plus + 1);
-  }
-
-  std::string product_text(const std::vector<std::string>& factors) const {
-    std::string text;
-    std::set<std::string> done;
-    for (const std::string& factor : factors) {
-      if (!done.insert(factor).second) continue;
-      const auto times = std::count(factors.begin(), factors.end(), factor);
-      const bool is_power = factor.find('^') != std::string::npos;  // x^3^2 is x^9
-      text +=
-          (text.empty() ? "" : "*") +
-          (times == 1 ? factor : fmt::format(fmt::runtime(is_power ? "({})^{}" : "{}^{}"), factor, times));
-    }
-    return text;
-  }
-
-  std::string sum_text(const std::vector<Monomial>& terms) const {
-    if (terms.empty()) return "0";
-    std::string text;
-    for (const Monomial& term : terms) {
-      const bool minus = std::signbit(term.coefficient);
-      const double size = std::abs(term.coefficient);
-      text += text.empty() ? (minus ? "-" : "") : (minus ? " - " : " + ");
-      const std::string product = product_text(term.factors);
-      if (product.empty()) {
-        text += number(size);
-      } else {
-        text += number(size) == "1" ? product : number(size) + "*" + product;
-      }
-      if (term.divisors.size() == 1) text += "/" + term.divisors.front();
-      if (term.divisors.size() > 1) text += "/(" + product_text(term.divisors) + ")";
-    }
-    return text;
-  }
-
-  std::string node_text(NodeId id) { return sum_text(scaled(id, 1)); }
+  std::string node_text(NodeId id) { return text_of(id, 1); }
 
   network::Network network_;
+  EquationNames names_;
   int digits_;
-  std::vector<Quantity> variables_;
-  std::unordered_map<NodeId, Quantity> names_;
-  std::unordered_set<NodeId> apart_;  ///< of `names_`: those with an equation of their own
-  std::unordered_set<NodeId> asked_;  ///< of these: those in the queue
+  std::unordered_set<NodeId> asked_;  ///< of what stands apart: that in the queue
   std::vector<NodeId> queue_;
   std::size_t next_ = 0;
-  std::vector<Output> outputs_;
   std::set<std::uint32_t> open_;  ///< discrete states whose comparisons are being written
-  int unnamed_ = 0;
 };
 
 }  // namespace
