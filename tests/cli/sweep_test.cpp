@@ -120,17 +120,22 @@ TEST_F(Sweep, TellsOfMachinesThatFailAndGoesOn) {
 }
 
 TEST_F(Sweep, KeepsWhatIsDoneWhereCtrlCEndsIt) {
-  const Outcome outcome =
-      run_command("timeout --preserve-status -s INT 1 oblique sweep " + decay_ +
-                      " --vary x.initial=0..1:500000 --jobs 2 --measure 'start(x)' -o " + file("t.csv"),
-                  OBLIQUE_SOURCE_DIR);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("interrupted: "));
-  EXPECT_THAT(outcome.err, HasSubstr(" of 500000 machines were run\nwrote "));
-  std::string header;
-  const auto rows = csv_rows(file("t.csv"), header);
+  std::vector<std::vector<double>> rows;
+  for (const std::string seconds :
+       {"1", "3", "9"}) {  // a busy computer may have done nothing after the first
+    const Outcome outcome =
+        run_command("timeout --preserve-status -s INT " + seconds + " oblique sweep " + decay_ +
+                        " --vary x.initial=0..1:1000000 --jobs 2 --measure 'start(x)' -o " + file("t.csv"),
+                    OBLIQUE_SOURCE_DIR);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("interrupted: "));
+    EXPECT_THAT(outcome.err, HasSubstr(" of 1000000 machines were run\nwrote "));
+    std::string header;
+    rows = csv_rows(file("t.csv"), header);
+    if (!rows.empty()) break;
+  }
   EXPECT_GE(rows.size(), 1U);
-  EXPECT_LT(rows.size(), 500'000U);
+  EXPECT_LT(rows.size(), 1'000'000U);
   for (const auto& row : rows) ASSERT_EQ(row[0], row[1]);
 }
 
