@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <oblique/network/program/near_root.h>
+
 namespace oblique::network {
 namespace {
 
@@ -127,6 +129,7 @@ LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<cons
     search = newton(loop, body, slots);
   }
   solved_ = search.failure == LoopFailure::none;
+  if (!solved_ && find_near_root(loop, body, slots, origin_[0])) return LoopFailure::none;
   if (!solved_ || !known || search.even_order || matrix_.determinant_sign() == search.first_sign)
     return search.failure;
   read(loop, slots, target_);
