@@ -200,8 +200,10 @@ void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
     const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
       return warning.what.substr(0, warning.what.find(kWhen)) == what.substr(0, what.find(kWhen));
     });
-    const bool acts = std::any_of(program_.events().begin(), program_.events().end(),
-                                  [&](const network::Event& event) { return event.block == follower.block; });
+    const bool acts =
+        std::any_of(program_.events().begin(), program_.events().end(), [&](const network::Event& event) {
+          return event.block == follower.block && !event.repeats;  // a table goes along on both sides
+        });
     if (acts && !told)
       warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
   }
