@@ -192,6 +192,19 @@ TEST(SmallStates, AreKnownWhereAnOutputStandsInSmallUnits) {
     EXPECT_NEAR(x[k], 5e-6 * std::cos(1e5 * t[k]), 5e-6 * 1e-8) << t[k];
 }
 
+// d, the integral of sin t − sin t, the one of the time and the other of states, shows their errors and
+// nothing else: nothing would make it known, and no finer run is made.
+TEST(SmallStates, AreNotWhatIsLeftOfLargerOnes) {
+  const std::string oscillator =
+      "c = { type = \"integrator\", in = \"-s\", initial = 1 }\ns = { type = \"integrator\", in = \"c\" }\n"
+      "u = { type = \"time-function\", formula = \"sin(time)\" }\n";
+  const oblique::solve::Run alone = run_of(Compiled(oscillator), {.until = 30});
+  const oblique::solve::Run both =
+      run_of(Compiled(oscillator + "d = { type = \"integrator\", in = [\"u\", \"-s\"] }\n"), {.until = 30});
+  EXPECT_TRUE(both.warnings.empty());
+  EXPECT_LT(both.statistics.steps, 2 * alone.statistics.steps);
+}
+
 TEST(SmallStates, AreLeftAloneWhereNothingShowsThem) {
   const oblique::solve::Run shown = run_of(Compiled(small_oscillator("1e-15", "1"), kShowY), {.until = 30});
   EXPECT_TRUE(shown.warnings.empty());

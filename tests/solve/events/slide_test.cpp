@@ -243,6 +243,21 @@ x = { type = "integrator", in = "f", limit = 1 }
   EXPECT_NEAR(row_values(result, "x").back(), -std::cos(4.0), 1e-7);  // ten tolerances
 }
 
+// A function with a jump behind a relay that slides for the time t/4 < 1 goes along on both of its sides: 3
+// for the part (1 + t/4)/2 of the time, −2 for the rest. Nothing is kept, so that nothing is to be told.
+TEST(Slides, AFunctionWithAJumpBehindThemIsNotWarnedOf) {
+  const auto result = run_of(Compiled(R"toml(
+g = { type = "ramp", slope = 0.25 }
+u = { type = "sign", in = "x" }
+x = { type = "integrator", in = ["g", "-u"] }
+h = { type = "function-generator", in = "u", points = [[-2, -2], [0.5, -2], [0.5, 3], [2, 3]] }
+y = { type = "integrator", in = "h" }
+)toml"),
+                             {.until = 4});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_NEAR(row_values(result, "y").back(), 3 * 3 - 2 * 1, 1e-7);
+}
+
 /// One bit of memory that conditions on `in` set and clear.
 diagram::BlockLibrary library_with_bit(const std::string& set, const std::string& clear) {
   return shipped_blocks_and(

@@ -275,5 +275,23 @@ TEST(Switch, IsToldOfWhereItCouldStartOnItsOtherSide) {
   EXPECT_THAT(one.warnings, ::testing::IsEmpty());
 }
 
+// The level of a comparator hangs on its own output, by a switch: 1/3 or 2/3, and x = 0.5 lies between them.
+TEST(Switch, IsToldOfWhereItCouldStartOnItsOtherSideByAnother) {
+  const auto warnings = [](const std::string& initial) {
+    return run_of(Compiled(
+                      "lo = { type = \"constant\", value = \"1/3\" }\n"
+                      "hi = { type = \"constant\", value = \"2/3\" }\n"
+                      "level = { type = \"electronic-switch\", on = \"hi\", off = \"lo\", control = \"c\" }\n"
+                      "c = { type = \"comparator\", in = [\"level\", \"-x\"] }\n"
+                      "x = { type = \"transfer-lag\", in = \"c\", initial = " +
+                      initial + " }\n"),
+                  {.until = 1})
+        .warnings;
+  };
+  ASSERT_EQ(warnings("0.5").size(), 1U);
+  EXPECT_THAT(warnings("0.5").front().what, ::testing::HasSubstr("has several solutions: at t = 0 s"));
+  EXPECT_THAT(warnings("0.8"), ::testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace oblique::solve

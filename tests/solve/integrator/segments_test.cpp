@@ -73,5 +73,30 @@ y = { type = "integrator", in = "x" }
   EXPECT_NEAR(row_values(result, "y").back(), 100 * 0.00125, 1e-7);
 }
 
+// After a million seconds the time shows nothing shorter than 1e-10 s: pulses of a hundredth of that have
+// their area, 1, all the same, by each method; the first comes at 1 000 005 s.
+TEST(Clocks, APulseThatTheTimeDoesNotShowHasItsLength) {
+  const Compiled made(R"toml(
+p = { type = "pulse-train", period = 10, width = 1e-12, high = 1e12, delay = 1000005 }
+x = { type = "integrator", in = "p" }
+)toml");
+  using diagram::IntegrationMethod;
+  for (const auto method : {IntegrationMethod::adams, IntegrationMethod::bdf, IntegrationMethod::rodas})
+    EXPECT_NEAR(row_values(run_of(made, {.until = 1000100, .method = method}), "x").back(), 10, 1e-7);
+}
+
+// Phases of a nanosecond, of which the time shows few digits late in the run, and of a picosecond, of which
+// it shows none.
+TEST(Phases, HaveTheirLengthLateInARun) {
+  for (const std::string length : {"1e-9", "1e-12"}) {
+    const Compiled made(
+        "k = { type = \"constant\", value = \"1/" + length +
+            "\" }\nx = { type = \"integrator\", in = \"k\" }\n",
+        "[timeline]\nphases = [ { mode = \"hold\", for = 1e4 }, { mode = \"operate\", for = " + length +
+            " } ]\ncycles = inf\n");
+    EXPECT_NEAR(row_values(run_of(made, {.until = 205'000}), "x").back(), 20, 1e-6) << length;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -12,8 +12,12 @@ namespace oblique::solve {
 namespace {
 
 /// An edge that comes as soon as this [of the time] ends a segment in any case, so that what it ends keeps
-/// its length. (What is no time at all is what rounding has left of the instant.)
+/// its length.
 constexpr double kNear = 1e-9;
+/// Of what is compared: a shorter wait than the time can show is what rounding has left of the instant. One
+/// that is nearly all of what is compared has begun just now: its length is known, though the time does not
+/// show it.
+constexpr double kWhole = 0.1;
 
 }  // namespace
 
@@ -48,7 +52,9 @@ std::optional<double> EventLocation::known_wait(double t, std::span<const double
     const double wait = event_functions_.is_off_zero(s) ? std::max(0.0, -event_functions_[s] / *rate) : 0;
     if (!std::isfinite(wait)) continue;
     if (which == Of::let_pass && !let_pass_[s]) continue;
-    const bool keeps_length = wait > time_resolution(t) && wait <= kNear * std::abs(t);
+    const double compared = event_functions_.here().compared_size(s) / std::abs(*rate);
+    const bool is_time = wait > time_resolution(t) || wait > kWhole * compared;
+    const bool keeps_length = is_time && wait <= kNear * std::abs(t);
     if (which == Of::ends_of_segments && let_pass_[s] && !keeps_length) continue;
     waits[s] = wait;
     next = std::min(next.value_or(wait), wait);

@@ -170,12 +170,14 @@ void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const 
   names.reserve(switches.size());
   for (const std::uint32_t s : switches) names.push_back(fmt::format("'{}'", program_.switches()[s].block));
   const network::Switch& first = program_.switches()[switches.front()];
-  const std::string begin =
-      fmt::format("the loop of the switches of {} has several solutions", shortened(names));
+  constexpr std::string_view kOf = "the loop of the switches of ", kHas = " has several solutions";
   const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
-    return warning.what.starts_with(begin);
+    return warning.what.starts_with(kOf) && std::all_of(names.begin(), names.end(), [&](const auto& name) {
+             return warning.what.find(name) < warning.what.find(kHas);
+           });
   });
   if (told) return;
+  const std::string begin = fmt::format("{}{}{}", kOf, shortened(names), kHas);
   warnings_.push_back(
       {{file_, {}},
        fmt::format("{}: at t = {:.9g} s the run goes on with '{}' ({}) {}; nothing in the diagram chooses "
@@ -200,8 +202,10 @@ void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
     const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
       return warning.what.substr(0, warning.what.find(kWhen)) == what.substr(0, what.find(kWhen));
     });
-    const bool acts = std::any_of(program_.events().begin(), program_.events().end(),
-                                  [&](const network::Event& event) { return event.block == follower.block; });
+    const bool acts =
+        std::any_of(program_.events().begin(), program_.events().end(), [&](const network::Event& event) {
+          return event.block == follower.block && !event.repeats;  // a table goes along on both sides
+        });
     if (acts && !told)
       warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
   }

@@ -126,12 +126,14 @@ std::optional<std::uint32_t> find_open(const network::Program& program, const ne
   }
   for (std::uint32_t s = 0; s < event_functions.size(); ++s) {
     const network::Switch& made = program.switches()[s];
-    const bool feeds_itself =
-        made.turning == network::Turning::jumps && !made.rate && program.switch_structure().depends(s, s);
-    if (!feeds_itself || in_loop[s] || slide.holds(s) || slide.follows(s)) continue;
-    network::Workspace trial = workspace;
+    if (made.turning != network::Turning::jumps || made.rate || in_loop[s] || slide.holds(s) ||
+        slide.follows(s))
+      continue;
     std::vector<bool> placed(event_functions.size(), false);
     placed[s] = true;
+    const bool feeds_itself = program.switch_structure().followers_of(placed)[s];  // by others, too
+    if (!feeds_itself) continue;
+    network::Workspace trial = workspace;
     trial.set_discrete_state(made.discrete_state, 1 - workspace.discrete_state(made.discrete_state));
     if (place_others(program, trial, thresholds, placed, t, x, event_functions) &&
         agrees(program, trial, slide, thresholds, span, t, x))

@@ -88,7 +88,7 @@ double CvodesSolver::step() {
     m.begin();
     code = m.take_step(part);
   }
-  m.t = m.clock >= m.length ? m.end : std::min(m.start + m.clock, m.end);
+  m.t = time_within(m.start, m.clock, m.end, m.length);
   if (code < 0 && m.system->is_to_end()) throw SolverFailure{SolverFailure::Kind::interrupted, m.t, code};
   if (code < 0) throw m.failure(code);
   ++m.steps;

@@ -23,8 +23,16 @@ double PhaseClock::end() const {
   return position_.begin + timeline_.phases[position_.phase].duration;
 }
 
+double PhaseClock::time_left(double t) const {
+  if (is_last()) return std::numeric_limits<double>::infinity();
+  return timeline_.phases[position_.phase].duration - (t - position_.begin);
+}
+
 bool PhaseClock::is_over(double t, const network::Evaluation& here) const {
-  return !is_last() && (t >= end() || here.phase_ends(position_.phase));
+  if (is_last()) return false;
+  // Of one that is shorter than the time shows this is not its end yet.
+  const bool begins = t == position_.begin && timeline_.phases[position_.phase].duration > 0;
+  return (t >= end() && !begins) || here.phase_ends(position_.phase);
 }
 
 void PhaseClock::advance(double t) {

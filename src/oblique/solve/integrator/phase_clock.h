@@ -19,6 +19,9 @@ class PhaseClock {
 
   /// When the phase ends at the latest [s]; infinite for the last one.
   double end() const;
+  /// How long it still lasts from t on at the most [s]: exactly where it begins there, though the time may
+  /// not show it.
+  double time_left(double t) const;
 
   /// Whether the phase is over at t, of which `here` was evaluated: its time, or its condition. The last
   /// phase is never over.

@@ -333,7 +333,7 @@ void RosenbrockSolver::take(double h) {
   std::copy(after_.begin(), after_.end(), x_.begin());
   rates_.swap(rates_after_);
   clock_ = h >= length_ - clock_ ? length_ : clock_ + h;
-  t_ = clock_ >= length_ ? end_ : std::min(start_ + clock_, end_);
+  t_ = time_within(start_, clock_, end_, length_);
   step_ = h;
   ++statistics_.steps;
   statistics_.last_step = h;

@@ -2,6 +2,7 @@
 #include <oblique/solve/integrator/segments.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -86,7 +87,10 @@ void Segments::begin(double t) {
   }
   const double last = std::min(parts_.clock.end(), parts_.options.until);
   end_ = wait ? std::min(t + *wait, last) : last;
-  length_ = wait ? std::min(*wait, last - t) : last - t;
+  const double left = std::min(parts_.clock.time_left(t), parts_.options.until - t);
+  length_ = wait ? std::min(*wait, left) : left;
+  // Shorter than the time shows: it then ends a rounding later, when its whole length has been gone through.
+  if (length_ > 0 && !(end_ > t)) end_ = std::nextafter(t, parts_.options.until);
   parts_.switching.lies_between(t, end_);
   parts_.switching.stand_at(t, parts_.states);
 }

@@ -30,6 +30,7 @@ constexpr double kSmallUnit = 1e-4, kStaysZero = 1e-13;
 
 constexpr std::size_t kMostStates = 100;  ///< looked at one by one
 constexpr double kRounding = 1e-15, kAboveRounding = 10;
+constexpr double kErrorOfSteps = 10;  ///< of the relative tolerance: what the steps together leave to a state
 
 }  // namespace
 
@@ -43,6 +44,7 @@ SmallStates::SmallStates(OdeSystem& system, const SolverSettings& settings, doub
       n_relative_(n_relative),
       peaks_(system.size(), 0),
       noise_(system.size(), 0),
+      left_by_others_(system.size(), 0),
       sizes_(n_readings, 0),
       values_(n_readings),
       moved_(n_readings),
@@ -73,12 +75,14 @@ void SmallStates::look(double t, std::span<const double> x) {
   for (std::size_t k = 0; k < values_.size(); ++k) sizes_[k] = std::max(sizes_[k], std::abs(values_[k]));
 
   std::vector<double> rates(x.size()), rates_off(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) off_states_[i] = x[i] * (1 + (i % 2 == 0 ? 1 : -1) * kRounding);
-  const bool known = system_.derivatives(t, x.data(), rates.data()) &&
-                     system_.derivatives(t, off_states_.data(), rates_off.data());
-  for (const std::size_t i : small) {
-    if (known) noise_[i] = std::max(noise_[i], span_ * std::abs(rates_off[i] - rates[i]));
-  }
+  const bool known = system_.derivatives(t, x.data(), rates.data());
+  const auto let_all_err_by = [&](double part, std::vector<double>& left) {
+    for (std::size_t i = 0; i < x.size(); ++i) off_states_[i] = x[i] * (1 + (i % 2 == 0 ? part : -part));
+    if (!known || !system_.derivatives(t, off_states_.data(), rates_off.data())) return;
+    for (const std::size_t i : small) left[i] = std::max(left[i], span_ * std::abs(rates_off[i] - rates[i]));
+  };
+  let_all_err_by(kRounding, noise_);
+  let_all_err_by(kErrorOfSteps * settings_.relative_tolerance, left_by_others_);
 
   for (const std::size_t i : small) {
     std::vector<double> off(x.size(), 0.0);
@@ -124,7 +128,10 @@ std::optional<std::size_t> SmallStates::reader_of(std::size_t state) const {
   const auto moves = moves_.find(state);
   if (moves == moves_.end()) return std::nullopt;
   for (std::size_t k = 0; k < sizes_.size(); ++k) {
-    const bool shows_small = sizes_[k] > kStaysZero && sizes_[k] < kSmallUnit;
+    // An output that shows nothing larger is looked at beside its own size: but for what a slide may hold at
+    // zero, and for what the errors of larger states leave where they cancel.
+    const bool shows_small = !slides_ && sizes_[k] > kStaysZero && sizes_[k] < kSmallUnit &&
+                             peaks_[state] > left_by_others_[state];
     const double much = k >= n_relative_ ? kMuchOfEventFunction * sizes_[k]
                         : shows_small    ? kMuchOfSmallOutput * tolerance_ * sizes_[k]
                                          : kMuch * tolerance_ * std::max(1.0, sizes_[k]);

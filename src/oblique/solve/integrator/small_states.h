@@ -25,9 +25,9 @@ struct SmallState {
 /// other states (by implicit steps of the linearised equations), and the readings are looked at: outputs in
 /// their units, and the event functions of switches beside their own size. States that are no more than the
 /// rounding of what they integrate are not told of: nothing would make them known. Where all states of a
-/// diagram are below 1e-4 it stands in small units (amperes of a nerve), and all above 1e-13 matter, but for
-/// slides, which hold states at zero to within errors. An output that stays between these (the radius of a
-/// bubble in metres, beside its speed) is to be known beside its own size. Not installed.
+/// diagram are below 1e-4 it stands in small units (amperes of a nerve), and all above 1e-13 matter, as do
+/// those behind an output that stays between the two; but for slides, which hold states at zero to within
+/// errors. Not installed.
 class SmallStates {
  public:
   /// Gives `n_readings` values at (t, x), false where they have none; those from `n_relative` on matter
@@ -59,8 +59,9 @@ class SmallStates {
   double tolerance_, span_;
   Readings readings_;
   std::size_t n_relative_;
-  std::vector<double> peaks_, noise_;  ///< of the states: largest magnitude, and what rounding makes of them
-  std::vector<double> sizes_;          ///< of the readings
+  std::vector<double> peaks_, noise_;   ///< of the states: largest magnitude, and what rounding makes of them
+  std::vector<double> left_by_others_;  ///< what the relative errors of all states make of them
+  std::vector<double> sizes_;           ///< of the readings
   std::vector<double> values_, moved_, off_states_;
   bool slides_ = false;
   std::map<std::size_t, std::vector<double>>

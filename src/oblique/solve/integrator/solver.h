@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -59,6 +61,12 @@ class Solver : public Interpolant {
   /// below 1.
   virtual std::vector<double> weighted_errors() const = 0;
 };
+
+/// The time at which a solver is that has gone on by `clock` of `length` since `start` [s]: `end` is reached
+/// with the whole length only, however near rounding brings it.
+inline double time_within(double start, double clock, double end, double length) {
+  return clock >= length ? end : std::min(start + clock, std::nextafter(end, start));
+}
 
 /// Steps shorter than this fraction of the time reached, some roundings of it, cannot move the clock any
 /// more. (The length of the run is no measure: a fast decay at the head of a long run takes steps that are

@@ -79,6 +79,14 @@ def microsecond_pulses_after_a_million():
     return {"a at 1000000.0105": 11.0, "b at 1000000.0105": 11.0, "n at 1000000.0105": 11.0}
 
 
+def picosecond_pulses_after_a_million():
+    """At 5000 + 10⁴ n; where cos(t/10⁴) rises through zero; the coil is on from 810 000 to 910 000 s."""
+    clock = lambda t: float(np.floor((t - 5e3) / 1e4) + 1)
+    rises = float(np.floor((100 - 1.5 * np.pi) / (2 * np.pi)) + 1)
+    return {"x at 50000": clock(5e4), "x at 1000000": clock(1e6), "y at 1000000": rises, "z at 900000": 1.0,
+            "z at 1000000": 0.0}
+
+
 def timer_after_a_million():
     """In microseconds: from 0 to 2/3 in ln 3, down to 1/3 in ln 2, the first rise; then one in 2 ln 2."""
     return {"n at 1000000.0010005": float(np.floor((1000.5 - np.log(6)) / (2 * np.log(2))) + 1)}

@@ -24,6 +24,19 @@ def oscillator_of_nanoamperes():
     return {"x at 1": x(1), "x at 30": x(30), "u at 10": 1e-9 / 11, "u at 30": 1e-9 / 31}
 
 
+def traces_beside_a_unit():
+    """The forced oscillation, and from it the free one that makes x and x′ zero at the start."""
+    forced = 1e-13 / (3 + 0.1j)
+    w = np.sqrt(4 - 0.05**2)
+    free = -forced.real + 1j * (0.05 * forced.real - forced.imag) / w
+
+    def x(t):
+        return float((forced * np.exp(1j * t)).real + (free * np.exp((-0.05 + 1j * w) * t)).real)
+
+    return {"b at 50": np.cos(50), "d at 20": 1e-9 * np.cos(40), "d at 50": 1e-9 * np.cos(100),
+            "x at 20": x(20), "x at 50": x(50)}
+
+
 def sine_integral():
     return {"q at 0": 1.0, "y at 10": float(sici(10)[0]), "y at 100": float(sici(100)[0])}
 
