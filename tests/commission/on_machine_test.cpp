@@ -59,5 +59,37 @@ TEST_F(FourBarOnMachine, KeepsTheBandwidthThatIsAskedFor) {
   EXPECT_FALSE(made.judgement.well_damped());
 }
 
+// Evans' linkage, of a crank OA = 0.8 and a coupler AB = 1.1 whose end B slides along y = 1.2. On a machine
+// the crank starts by wires, and before it is there the height of B over A is 1.2, more than the coupler is
+// long.
+TEST(PatchOnMachine, StartsAtADriveThatStartsByWires) {
+  const mechanism::Mechanism evans = mechanism::parse_mechanism(R"toml(format = "oblique-mechanism/1"
+[units]
+length = "m"
+[frame]
+O = [0, 0]
+G = [0, 1.2]
+H = [3, 1.2]
+[bodies]
+OA = { points = ["O", "A"], length = 0.8 }
+AB = { points = ["A", "B"], length = 1.1 }
+[slides]
+b = { point = "B", along = ["G", "H"] }
+[drives]
+crank = { turns = "OA", about = "O", speed = "0.4 rad/s", start = "0.6 rad" }
+[sketch]
+B = [1.5, 1.2]
+[motion]
+until = "1.5 s"
+)toml",
+                                                                "evans.toml");
+  const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();
+  for (const char* const machine : {"tr-10", "model-1"}) {
+    const MachinePatch made =
+        put_on_machine(evans, library, *diagram::find_machine(machine), judged_patch(evans, library, {}));
+    EXPECT_TRUE(made.judgement.well_damped()) << machine << ": " << made.judgement.no_rest;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::commission

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flatten.h>
 #include <oblique/ensemble/study/scatter.h>
 #include <oblique/mechanism/model/read_mechanism.h>
@@ -51,6 +52,26 @@ TEST(ErrorBudget, OfACrank) {
     ++of_coordinates;
   }
   EXPECT_EQ(of_coordinates, 2);
+}
+
+// x′ = −(1 + a)/(1 + b) x on a machine of which both scatter by w: each moves x by t e⁻ᵗ w/√3, which is
+// largest at t = 1.
+TEST(ErrorBudget, OfAnIntegratorWhoseResistorAndCapacitorScatter) {
+  constexpr double kWidth = 1e-3;
+  const diagram::Diagram decay = diagram::parse_diagram(
+      "format = \"oblique-diagram/1\"\n[run]\nuntil = 2\n[blocks]\n"
+      "x = { type = \"integrator\", in = \"-x\", initial = 1 }\n",
+      "decay.toml");
+  BudgetOptions options;
+  options.positions = 41;
+  options.scatters = {{"integrator", "tolerance", kWidth, ""},
+                      {"integrator", "capacitor_tolerance", kWidth, ""}};
+  const ErrorBudget budget = error_budget(decay, testing::shipped_blocks(), options);
+  ASSERT_THAT(budget.entries, SizeIs(2));
+  const double each = std::exp(-1) * kWidth / std::numbers::sqrt3;
+  constexpr double kRelative = 1e-6;  // a hundred times the tolerance of the run
+  for (const BudgetEntry& entry : budget.entries) EXPECT_NEAR(entry.largest, each, kRelative * each);
+  EXPECT_NEAR(budget.error, std::sqrt(2) * each, kRelative * each);
 }
 
 /// C of a four-bar with some of its parameters changed, in a row of its run.

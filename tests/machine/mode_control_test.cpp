@@ -155,6 +155,61 @@ passed = "passed"
 }
 
 // A timeline alone is what any machine has: its integrators change their mode together.
+/// A plant y′ = 20 s − y whose input is sampled twice a second: s = 1.2 (10 − y), in the units of the
+/// problem.
+std::string sampled(const std::string& store) {
+  return "[run]\nuntil = 3\nsamples = 61\n[blocks]\n"
+         "ten = { type = \"constant\", value = 10 }\n"
+         "e = { type = \"summer\", in = [\"1.2*ten\", \"-1.2*y\"] }\n"
+         "c = { type = \"pulse-train\", period = 0.5, width = 0.01 }\n"
+         "s = { type = \"track-and-store\", in = \"e\"" +
+         store +
+         " }\n"
+         "y = { type = \"integrator\", in = [\"s\", \"-y\"] }\n"
+         "[outputs]\ny = \"y\"\n";
+}
+
+// While it tracks, y′ = 12 − 2.2 y; while it stores, y′ = s − y: one exponential after the other.
+TEST(Modes, OfAStoreAreThoseOfAnIntegrator) {
+  const ScaledRealisation made = made_with_modes(sampled(", track = \"c\""));
+  ASSERT_EQ(made.diagram.groups.size(), 1U);
+  EXPECT_EQ(made.diagram.groups[0].blocks.size(), 1U);
+  EXPECT_NE(made.diagram.groups[0].initial, "");
+  double y = 0;
+  const solve::Trajectory run = trajectory_of(made.diagram);
+  for (std::size_t row = 0; row < run.rows(); row += 10) {
+    EXPECT_NEAR(run.at(row, 1), y, 1e-4) << "an integrator follows its initial value within a microsecond";
+    y = 12 / 2.2 + (y - 12 / 2.2) * std::exp(-2.2 * 0.01);
+    const double stored = 1.2 * (10 - y);
+    y = stored + (y - stored) * std::exp(-0.49);
+  }
+}
+
+TEST(Modes, OfAStoreThatStartsOtherwiseAreRefused) {
+  const auto message = [](const std::string& store, const diagram::MachineProfile& machine) {
+    try {
+      made_with_modes(sampled(store), machine);
+    } catch (const RealiseError& error) {
+      return std::string(error.what());
+    }
+    return std::string("realised");
+  };
+  EXPECT_EQ(
+      message(", track = \"-c\", initial = 3", machine_with_modes()),
+      "test.toml:9:1: 's' starts at 3, and an integrator that stores its input would start at 12; expected a "
+      "start that an integrator in track and store has\n"
+      "  remedy: give it initial = 12, or let it track at the start");
+  EXPECT_EQ(message(", track = \"-c\", initial = 12", machine_with_modes()), "realised");
+  EXPECT_EQ(message(", track = \"c\", acquisition_time = 0.1, initial = 3", machine_with_modes()),
+            "test.toml:9:1: 's' starts at 3, and an integrator that charges its capacitor would start at 0; "
+            "expected a start that an integrator in track and store has\n"
+            "  remedy: give it initial = 0");
+  EXPECT_THAT(
+      message(", track = \"c\"", machine_of_one_mode()),
+      HasSubstr("the machine Desk has one mode for all its integrators, and the integrators of 's' have "
+                "modes of their own"));
+}
+
 TEST(Modes, OfAllIntegratorsTogetherSuitEveryMachine) {
   const ScaledRealisation made = made_with_modes(R"toml(
 [run]

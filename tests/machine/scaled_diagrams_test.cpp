@@ -56,8 +56,9 @@ const std::map<std::string, Fate> kFates = {
     {"lessons/range-of-a-throw", {0, "has no counter, which 'throws' is"}},
     {"lessons/relay-oscillator", {0, "has no counter, which 'periods' is"}},
     {"lessons/repetitive-operation", {kJumps}},
-    {"lessons/sampled-regulator", {0, "has no track-and-store, which "}},
-    {"lessons/stick-slip", {0, "has no flip-flop, which 'sticks' is"}},
+    // Its stores hold 0 at the start, where an integrator would hold what it is to track.
+    {"lessons/sampled-regulator",
+     {0, "'e' starts at 0, and an integrator that stores its input would start at 0.2"}},
     {"lessons/three-body", {1e-4, {}, 1}},
     {"lessons/triangle-aas", {1e-5}},
     {"lessons/triangle-asa", {1e-5}},

@@ -134,6 +134,19 @@ INSTANTIATE_TEST_SUITE_P(
         ElementCase{"step", R"(y = { type = "step", at = 1.234, from = -2, to = 7 })"},
         ElementCase{"hysteresis",
                     R"(y = { type = "comparator", in = ["u", "-v"], hysteresis = 0.5, low = -3, high = 5 })"},
+        ElementCase{
+            "relay",
+            R"(y = { type = "relay", coil = "u", make = "3*v", break = "u", pull_in = 0.9, drop_out = -0.3 })"},
+        ElementCase{"flip_flop", R"(hot = { type = "comparator", in = ["u", "-1.5*one"] }
+late = { type = "comparator", in = ["v"] }
+y_of = { type = "flip-flop", set = "hot", reset = "late" }
+y = { type = "summer", in = ["5*y_of.out", "y_of.inverse"] })"},
+        ElementCase{"flip_flop_of_signals",
+                    R"(y_of = { type = "flip-flop", set = "u", reset = "-u", initial = 1 }
+y = { type = "summer", in = ["5*y_of.out", "y_of.inverse"] })"},
+        ElementCase{
+            "pulses",
+            R"(y = { type = "pulse-train", period = 0.7, width = 0.2, delay = 1.6, low = -2, high = 7 })"},
         // 200 lines over a turn: (∫√|cos| dx)²/(16·200²) = 3.6e-5 over four quarters, times r = 2
         ElementCase{"resolver", R"(y_of = { type = "resolver", length = "u", angle = "2*v" }
 y = { type = "summer", in = ["y_of.x", "y_of.y"] })",

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include <oblique/diagram/flatten.h>
 #include <oblique/diagram/propose_scaling.h>
@@ -53,6 +55,10 @@ bool has_servos(const diagram::Diagram& diagram, const diagram::BlockLibrary& li
 
 constexpr int kDecades = 12;  ///< by which servo amplifiers may be slowed
 
+/// Of a trial run on the machine's elements: one that takes more will not tell how far its signals go, since
+/// its loops swing, or jump without end, by the errors of their elements.
+constexpr std::int64_t kMostSteps = 200'000;
+
 /// The speeds that servo amplifiers are tried at, each less than the one before.
 std::vector<double> loop_speeds() {
   std::vector<double> speeds;
@@ -68,7 +74,6 @@ Judgement judge_loops(const diagram::Diagram& diagram, const diagram::BlockLibra
   Judgement at_rest = judge(diagram, library);
   if (at_rest.no_rest.empty()) return at_rest;
   try {
-    constexpr std::int64_t kMostSteps = 200'000;
     diagram::Diagram limited = diagram;
     limited.run.max_steps = std::min(limited.run.max_steps, kMostSteps);
     return judge_along_run(limited, library);
@@ -118,11 +123,39 @@ void fit_loops(const machine::MachineScaling& scaling, const diagram::BlockLibra
 void find_overloads(const diagram::FlatDiagram& flat, DiagramOnMachine& result) {
   const network::Program program(network::assemble(flat));
   solve::RunOptions options = solve::options_of(result.made.diagram.run);
+  options.max_steps = std::min(options.max_steps, kMostSteps);
   options.watch_overloads = true;
   for (const solve::OverloadRecord& record : solve::run(program, flat, options).overloads)
     result.overloads.push_back({program.signal_names()[record.signal], std::abs(record.peak.value)});
   std::stable_sort(result.overloads.begin(), result.overloads.end(),
                    [](const auto& a, const auto& b) { return a.peak > b.peak; });
+}
+
+/// Gives room to what the machine's errors drive over the machine unit, a round for each thing that goes too
+/// far after the one before. Where a signal is the smaller the more room it has, errors that stay as they are
+/// may drive it the farther: of all rounds the one stays that leaves the machine unit least.
+void fit_room(machine::MachineScaling& scaling, DiagramOnMachine& result) {
+  constexpr int kRounds = 4;
+  std::optional<machine::ScaledRealisation> best;
+  double least = 0, before = 0;
+  for (int round = 0; round <= kRounds; ++round) {
+    double excess = 0;
+    try {
+      excess = scaling.make_room(result.made, kMostSteps);
+    } catch (const solve::SolveError&) {
+      if (!best) throw;
+      break;
+    }
+    const bool no_more = excess == 0 || (round > 0 && excess == before);
+    if (!best || excess < least) {
+      best = std::move(result.made);
+      least = excess;
+    }
+    if (no_more) break;
+    before = excess;
+    result.made = scaling.realise(result.loop_speed);
+  }
+  result.made = std::move(*best);
 }
 
 /// What grows without bound on amplifiers that do not saturate stays within their limits on those that do.
@@ -147,9 +180,7 @@ DiagramOnMachine put_on_machine(const diagram::Diagram& diagram, const diagram::
   result.made = scaling.realise();
   if (has_servos(result.made.diagram, library)) fit_loops(scaling, library, result);
   try {
-    constexpr int kRounds = 4;  // each gives room by what the one before went too far
-    for (int round = 0; round < kRounds && scaling.make_room(result.made); ++round)
-      result.made = scaling.realise(result.loop_speed);
+    fit_room(scaling, result);
     find_overloads(diagram::without_saturation(diagram::flatten(result.made.diagram, library)), result);
   } catch (const solve::SolveError& error) {
     find_end(error, library, result);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,9 @@
 
 #include <oblique/machine/realise.h>
 #include <oblique/machine/role.h>
+#include <oblique/network/assembly/network.h>
+#include <oblique/network/program/program.h>
+#include <oblique/solve/static_test.h>
 
 namespace oblique::machine {
 namespace {
@@ -35,29 +39,40 @@ bool is_mode_line(const diagram::FlatBlock& block) {
   return std::max(std::abs(parameter_of(block, "low")), std::abs(parameter_of(block, "high"))) == 1;
 }
 
-/// Appends a comparator of `signal` with a half, and lets `signal` be its output.
-void compare_with_half(diagram::FlatDiagram& flat, const diagram::BlockLibrary& library,
-                       const std::string& name, diagram::SignalRef& signal) {
-  diagram::FlatBlock line;
-  line.definition = &element_block(library, Role::comparator);
-  line.path = free_name(name, paths_of(flat));
-  line.place = flat.blocks[signal.block].place;
-  for (const diagram::ParameterDefinition& parameter : line.definition->parameters)
-    line.parameters.push_back(parameter.default_value);
-  line.choose_behaviour();
-  for (const diagram::InputPort& input : line.definition->inputs) {
-    line.inputs.push_back({{}, input.default_value.value_or(0)});
-    if (input.sum) line.inputs.back() = {{{1, signal}}, -0.5};
+/// An element that has its defaults, and nothing at its inputs.
+diagram::FlatBlock element(const diagram::BlockLibrary& library, Role role, std::string path,
+                           const text::Place& place) {
+  diagram::FlatBlock made;
+  made.definition = &element_block(library, role);
+  made.path = std::move(path);
+  made.place = place;
+  for (const diagram::ParameterDefinition& parameter : made.definition->parameters)
+    made.parameters.push_back(parameter.default_value);
+  made.choose_behaviour();
+  for (const diagram::InputPort& input : made.definition->inputs)
+    made.inputs.push_back({{}, input.default_value.value_or(0)});
+  return made;
+}
+
+/// Appends a comparator of `what` with a half; its output.
+diagram::SignalRef compare_with_half(diagram::FlatDiagram& flat, const diagram::BlockLibrary& library,
+                                     const std::string& name, diagram::FlatInput what,
+                                     const text::Place& place) {
+  diagram::FlatBlock line = element(library, Role::comparator, free_name(name, paths_of(flat)), place);
+  what.constant -= 0.5;
+  for (std::size_t port = 0; port < line.inputs.size(); ++port) {
+    if (line.definition->inputs[port].sum) line.inputs[port] = what;
   }
-  signal = {flat.blocks.size(), 0};
   flat.blocks.push_back(std::move(line));
+  return {flat.blocks.size() - 1, 0};
 }
 
 void wire_mode_lines(diagram::FlatDiagram& flat, const diagram::BlockLibrary& library) {
   for (diagram::FlatGroup& group : flat.timeline.groups) {
     for (const auto& [line, what] : {std::pair(&group.initial, "initial"), std::pair(&group.hold, "hold")}) {
-      if (*line && !is_mode_line(flat.blocks[(*line)->block]))
-        compare_with_half(flat, library, group.name + "_" + what, **line);
+      if (!*line || is_mode_line(flat.blocks[(*line)->block])) continue;
+      const text::Place place = flat.blocks[(*line)->block].place;
+      *line = compare_with_half(flat, library, group.name + "_" + what, {{{1, **line}}, 0}, place);
     }
   }
 }
@@ -92,6 +107,81 @@ std::vector<std::string> keep_operating(diagram::FlatDiagram& flat, const diagra
   return found;
 }
 
+/// Where an integrator without inputs that is in initial condition while it tracks does not start as a store
+/// does: an integrator starts at what it is to track.
+void check_start(const diagram::FlatDiagram& flat, const diagram::FlatBlock& store,
+                 const std::unordered_map<std::string, double>& at_start) {
+  const auto value = [&](const diagram::FlatInput& input) {
+    double sum = input.constant;
+    for (const diagram::FlatTerm& term : input.terms)
+      sum += term.weight * at_start.at(flat.signal_name(term.signal));
+    return sum;
+  };
+  const double in = value(store.inputs[0]), initial = parameter_of(store, "initial");
+  const bool tracks = value(store.inputs[1]) > 0.5;
+  if (tracks && parameter_of(store, "acquisition_time") == 0) return;
+  const double starts = tracks ? 0 : in;
+  constexpr double kRounding = 1e-9;
+  if (std::abs(starts - initial) <= kRounding * std::max(std::abs(in), std::abs(initial))) return;
+  throw RealiseError(text::Diagnostic{
+      store.place,
+      fmt::format("'{}' starts at {:.6g}, and an integrator that {} would start at {:.6g}", store.path,
+                  initial, tracks ? "charges its capacitor" : "stores its input", starts),
+      "a start that an integrator in track and store has",
+      fmt::format("give it initial = {:.6g}{}", starts, tracks ? "" : ", or let it track at the start")});
+}
+
+/// Whether it is a store that tracks its first input while the second, `track`, is high, unless a user has
+/// put a block of that kind in its place.
+bool may_be_store(const diagram::FlatBlock& block) {
+  const diagram::BlockDefinition& definition = *block.definition;
+  return definition.needs.size() == 1 && definition.needs.front().kind == diagram::ElementKind::store &&
+         definition.find_input("track") == std::optional<std::size_t>(1);
+}
+
+/// Puts integrators in the place of stores.
+void make_stores(diagram::FlatDiagram& flat, const diagram::BlockLibrary& library) {
+  if (std::none_of(flat.blocks.begin(), flat.blocks.end(), may_be_store)) return;
+  const diagram::BlockLibrary shipped = diagram::BlockLibrary::shipped();
+  const auto is_store = [&](const diagram::FlatBlock& block) {
+    const diagram::BlockDefinition* const original = shipped.find(block.definition->name);
+    return may_be_store(block) && original != nullptr && original->text == block.definition->text;
+  };
+  std::unordered_map<std::string, double> at_start;
+  for (const solve::StaticReading& reading :
+       solve::static_test(network::Program(network::assemble(flat)), flat.file))
+    at_start[reading.signal] = reading.output;
+  std::set<std::string> names{"main", "mode", "for", "until"};
+  for (const diagram::FlatGroup& group : flat.timeline.groups) names.insert(group.name);
+  if (flat.timeline.groups.empty()) flat.timeline.groups.push_back({"main", {}, {}});
+  const std::size_t n = flat.blocks.size();
+  for (std::size_t b = 0; b < n; ++b) {
+    if (!is_store(flat.blocks[b])) continue;
+    const diagram::FlatBlock store = flat.blocks[b];
+    check_start(flat, store, at_start);
+    std::string name = store.path;
+    std::replace(name.begin(), name.end(), '.', '_');
+    name = free_name(name, names);
+    names.insert(name);
+    diagram::FlatBlock integrator = element(library, Role::integrator, store.path, store.place);
+    integrator.tolerance = store.tolerance;
+    integrator.group = flat.timeline.groups.size();
+    integrator.parameters[integrator.definition->find_parameter("charging").value()] =
+        parameter_of(store, "acquisition_time");
+    integrator.choose_behaviour();
+    integrator.inputs[integrator.definition->find_input("start").value()] = store.inputs[0];
+    flat.blocks[b] = std::move(integrator);
+    const diagram::FlatInput& track = store.inputs[1];
+    const bool is_line = track.constant == 0 && track.terms.size() == 1 && track.terms.front().weight == 1;
+    const diagram::SignalRef line =
+        is_line ? track.terms.front().signal
+                : compare_with_half(flat, library, name + "_initial", track, store.place);
+    flat.timeline.groups.push_back({name, line, {}});
+    for (diagram::FlatPhase& phase : flat.timeline.phases)
+      phase.modes.push_back(diagram::OperatingMode::operate);
+  }
+}
+
 }  // namespace
 
 std::optional<bool> has_mode_groups(const diagram::MachineProfile& machine) {
@@ -105,8 +195,10 @@ std::optional<bool> has_mode_groups(const diagram::MachineProfile& machine) {
 
 void prepare_modes(diagram::FlatDiagram& flat, const diagram::FlatDiagram& own,
                    const diagram::BlockLibrary& library, const diagram::MachineProfile& machine) {
+  std::vector<std::string> sources;
+  if (!flat.timeline.groups.empty()) sources = keep_operating(flat, own);
+  make_stores(flat, library);
   if (flat.timeline.groups.empty()) return;
-  const std::vector<std::string> sources = keep_operating(flat, own);
   if (has_mode_groups(machine) == std::optional(false) && flat.timeline.groups.size() > 1) {
     std::vector<std::string> groups;
     for (std::size_t g = 1; g < flat.timeline.groups.size(); ++g)

@@ -19,8 +19,10 @@ std::optional<bool> has_mode_groups(const diagram::MachineProfile& machine);
 
 /// Prepares the modes of a flat diagram for a machine. A mode line becomes a comparator's, of the levels 0
 /// and 1, unless it is one. Integrators that are not in `own`, which stand for a source or a lag, operate in
-/// a group of their own: what they stand for knows no modes. Throws RealiseError where groups of integrators
-/// have modes of their own and the machine has one for all.
+/// a group of their own: what they stand for knows no modes. A store becomes an integrator without inputs,
+/// whose initial value is what it tracks, in a group of its own that is in initial condition while it does.
+/// Throws RealiseError where groups of integrators have modes of their own and the machine has one for all,
+/// and where a store does not start as such an integrator does.
 void prepare_modes(diagram::FlatDiagram& flat, const diagram::FlatDiagram& own,
                    const diagram::BlockLibrary& library, const diagram::MachineProfile& machine);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <unordered_map>
 #include <utility>
@@ -96,7 +97,8 @@ class MachineScaling::State {
         elements_(element_library(library)),
         machine_(machine),
         time_(options.time) {
-    flat_ = diagram::flatten_on_ideal_elements(diagram, elements_);
+    const diagram::FlatDiagram own = diagram::flatten_on_ideal_elements(diagram, library);
+    flat_ = in_circuits();
     const bool has_others = std::any_of(flat_.blocks.begin(), flat_.blocks.end(), [](const auto& block) {
       return block.definition->role == diagram::Role::other;
     });
@@ -104,7 +106,7 @@ class MachineScaling::State {
       functions_ = tabulate_functions(flat_, elements_, machine, signal_ranges(flat_, diagram.run),
                                       diagram.run.until, options.segments);
     }
-    prepare_modes(flat_, diagram::flatten_on_ideal_elements(diagram, library), elements_, machine);
+    prepare_modes(flat_, own, elements_, machine);
     circuit_ = reduce(flat_, elements_, most_weight_of_one(machine));
     check_elements(circuit_, machine);
     const Realisation unscaled = write_elements(diagram, flat_, elements_, without_errors(machine), circuit_);
@@ -123,6 +125,7 @@ class MachineScaling::State {
       }
     }();
     for (const std::string& element : unscaled.elements) peaks_.push_back(peaks.at(element));
+    ideal_peaks_ = peaks_;
   }
 
   ScaledRealisation realise(double loop_speed) const {
@@ -145,8 +148,8 @@ class MachineScaling::State {
     return result;
   }
 
-  bool make_room(const ScaledRealisation& realised) {
-    auto peaks = peaks_by_name(realised.diagram);
+  double make_room(const ScaledRealisation& realised, std::int64_t most_steps) {
+    auto peaks = peaks_by_name(realised.diagram, most_steps);
     // What goes beyond the unit by an inverter's own error is the signal that it inverts.
     const diagram::FlatDiagram flat = diagram::flatten(realised.diagram, library_);
     for (const diagram::FlatBlock& block : flat.blocks) {
@@ -154,46 +157,66 @@ class MachineScaling::State {
       double& inverted = peaks.at(flat.blocks[block.inputs.front().terms.front().signal.block].path);
       inverted = std::max(inverted, peaks.at(block.path));
     }
-    bool more = false;
+    double excess = 0;
     for (std::size_t e = 0; e < realised.scales.size(); ++e) {
       const double peak = peaks.at(realised.scales[e].signal);
       if (peak <= 1 + diagram::kOverloadTolerance) continue;
-      const double wanted = peak * realised.scales[e].unit;
+      excess = std::max(excess, peak - 1);
       if (is_product(circuit_.elements[e].role)) {
         std::vector<bool> seen(peaks_.size(), false);
-        more = give_factors_room(e, peak, seen) || more;
-      } else if (wanted > peaks_[e]) {
-        peaks_[e] = wanted;
-        more = true;
+        give_factors_room(e, peak, seen);
+      } else {
+        give_room(e, peak * realised.scales[e].unit);
       }
     }
-    return more;
+    return excess;
   }
 
  private:
-  /// The scale of a product is that of its factors, so that these get `by` times the room. Whether there are
-  /// any.
-  bool give_factors_room(std::size_t product, double by, std::vector<bool>& seen) {
-    bool any = false;
+  /// The diagram with circuits of elements in the place of blocks that no machine has. What it may say of a
+  /// block is here what the circuit allows.
+  diagram::FlatDiagram in_circuits() const {
+    try {
+      return diagram::flatten_on_ideal_elements(diagram_, elements_);
+    } catch (const diagram::DiagramError& error) {
+      text::Diagnostics told;
+      for (text::Diagnostic diagnostic : error.diagnostics()) {
+        diagnostic.remedy = fmt::format("the elements of {} make no other one", machine_.title);
+        told.add(std::move(diagnostic));
+      }
+      told.throw_if_any<RealiseError>();
+      throw;
+    }
+  }
+
+  /// What is to go twice as far as on ideal elements is not what the diagram computes: it gets no room.
+  void give_room(std::size_t e, double wanted) {
+    constexpr double kMost = 2;
+    peaks_[e] = std::max(peaks_[e], std::min(wanted, kMost * ideal_peaks_[e]));
+  }
+
+  /// The scale of a product is that of its factors, so that these get `by` times the room.
+  void give_factors_room(std::size_t product, double by, std::vector<bool>& seen) {
     for (const CircuitInput& input : circuit_.elements[product].inputs) {
       for (const CircuitTerm& term : input.terms) {
         if (!term.signal || seen[term.signal->block]) continue;
         const std::size_t factor = term.signal->block;
         seen[factor] = true;
         if (is_product(circuit_.elements[factor].role)) {
-          any = give_factors_room(factor, by, seen) || any;
+          give_factors_room(factor, by, seen);
         } else {
-          peaks_[factor] *= by;
-          any = true;
+          give_room(factor, by * peaks_[factor]);
         }
       }
     }
-    return any;
   }
 
   /// Where no amplifier saturates: a peak that is cut off tells no scale.
-  std::unordered_map<std::string, double> peaks_by_name(const diagram::Diagram& diagram) const {
-    return peaks_of(diagram::without_saturation(diagram::flatten(diagram, library_)), diagram.run);
+  std::unordered_map<std::string, double> peaks_by_name(const diagram::Diagram& diagram,
+                                                        std::int64_t most_steps) const {
+    diagram::RunSettings run = diagram.run;
+    run.max_steps = std::min(run.max_steps, most_steps);
+    return peaks_of(diagram::without_saturation(diagram::flatten(diagram, library_)), run);
   }
 
   const diagram::Diagram& diagram_;
@@ -204,7 +227,8 @@ class MachineScaling::State {
   diagram::FlatDiagram flat_;  ///< unscaled, as `circuit_`, which refers to it
   std::vector<TabulatedFunction> functions_;
   Circuit circuit_;
-  std::vector<double> peaks_;  ///< of each element, unscaled
+  std::vector<double> peaks_;        ///< of each element, unscaled
+  std::vector<double> ideal_peaks_;  ///< the same without room
 };
 
 MachineScaling::MachineScaling(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
@@ -217,8 +241,8 @@ ScaledRealisation MachineScaling::realise(double loop_speed) const {
   return state_->realise(loop_speed);
 }
 
-bool MachineScaling::make_room(const ScaledRealisation& realised) {
-  return state_->make_room(realised);
+double MachineScaling::make_room(const ScaledRealisation& realised, std::int64_t most_steps) {
+  return state_->make_room(realised, most_steps);
 }
 
 ScaledRealisation realise_scaled(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,

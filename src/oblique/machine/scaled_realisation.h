@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -62,9 +63,11 @@ class MachineScaling {
   /// With servo amplifiers `loop_speed` (at most 1) times as fast as the diagram's.
   ScaledRealisation realise(double loop_speed = 1) const;
 
-  /// Takes note of how far the signals of `realised` go on real elements: further ones get more room. Whether
-  /// there are any. Throws solve::SolveError where they do not run.
-  bool make_room(const ScaledRealisation& realised);
+  /// Takes note of how far the signals of `realised` go on real elements: further ones get more room, up to
+  /// twice as much as they need on ideal ones. By how much the farthest leaves the machine unit, 0 where all
+  /// stay within it. Throws solve::SolveError where
+  /// they do not run within `most_steps`.
+  double make_room(const ScaledRealisation& realised, std::int64_t most_steps);
 
  private:
   class State;

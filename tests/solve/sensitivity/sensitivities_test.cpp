@@ -74,6 +74,30 @@ TEST(Sensitivities, WhereAFactorIsZeroOrOne) {
   expect_column(run, "d(y)/d(p.setting)", kTolerance, [](double t) { return -0.35 * t * t; });
 }
 
+// x′ = −(1 + a)/(1 + b) x: both are 0, and the factor is 1 wherever they are equal. As of an integrator whose
+// resistor and whose capacitor scatter.
+TEST(Sensitivities, OfParametersThatCancelEachOther) {
+  const Compiled made("x = { type = \"integrator\", in = \"-x\", initial = 0.7 }\n");
+  const auto run = differentiated(made, {"x.tolerance", "x.capacitor_tolerance"});
+  expect_column(run, "d(x)/d(x.tolerance)", kTolerance, [](double t) { return -0.7 * t * std::exp(-t); });
+  expect_column(run, "d(x)/d(x.capacitor_tolerance)", kTolerance,
+                [](double t) { return 0.7 * t * std::exp(-t); });
+}
+
+// y = √x, held by an amplifier of 10 kHz and a gain of 10⁶: where it rests to rounding it moves by some 10⁻⁵
+// a second.
+TEST(Sensitivities, OfTheRestOfAFastAmplifier) {
+  const Compiled made(
+      "x = { type = \"integrator\", in = \"-x\", initial = 0.7 }\n"
+      "s = { type = \"squarer\", in = \"y\" }\n"
+      "y = { type = \"servo-amplifier\", in = [\"10*s\", \"-10*x\"], bandwidth = \"10 kHz\", initial = 1 "
+      "}\n");
+  const auto run = differentiated(made, {"x.initial"});
+  constexpr double kGain = 1e-6;  // 1/(10⁷ · 2y) of the loop, and its lag of a nanosecond
+  expect_column(run, "d(y)/d(x.initial)", kGain,
+                [](double t) { return 0.5 * std::exp(-t / 2) / std::sqrt(0.7); });
+}
+
 // However small the parameter is beside the tolerance of the states, it is the derivative that is asked for.
 TEST(Sensitivities, OfATinyParameter) {
   const Compiled made("x = { type = \"integrator\", in = \"x\", initial = 1e-12 }\n");

@@ -22,9 +22,15 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
                                     [](const network::State& state) { return state.start_node.has_value(); });
   std::vector<double> signals(program.n_signals());
   std::vector<std::size_t> circle;
-  bool changes = true, finite = true;
+  // A loop may have no solution, or another one, for as long as states are not there that start from signals:
+  // it is passed over, and sought anew from where it stood once they are.
+  std::vector<double> unknowns;
+  for (std::size_t u = 0; u < program.unknowns().size(); ++u) unknowns.push_back(workspace.unknown(u));
+  bool changes = true, finite = true, there = false, moved = false;
   for (long round = 0; changes && finite && round <= starts + kMostRoundsInCircle; ++round) {
+    workspace.pass_failing_loops(!there);
     const auto here = program.signals(t, x.data(), signals.data(), workspace);
+    workspace.pass_failing_loops(false);
     if (!here) throw loop_error(program, workspace.trouble(), t, file);
     changes = false;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -46,6 +52,11 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
       }
       x[i] = *value;
     }
+    moved = moved || changes;
+    if (changes || std::exchange(there, true)) continue;
+    for (std::size_t u = 0; moved && u < unknowns.size(); ++u) workspace.set_unknown(u, unknowns[u]);
+    changes = true;  // as the next rounds may show, in which every loop is to have its solution
+    round = -1;
   }
   if (circle.empty()) return;
   std::sort(circle.begin(), circle.end());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,11 +17,14 @@
 namespace oblique::solve {
 namespace {
 
-/// How far beside its value a parameter is put for the equations to be compiled: there nothing is left out
-/// because a factor is 0 or 1.
-double beside(double value) {
+/// How far beside its value the k-th parameter is put for the equations to be compiled: there nothing is left
+/// out because a factor is 0 or 1. Each lies beside by a part of its own, the fractions of multiples of the
+/// golden ratio: (1 + a)/(1 + b), of two that are 0, is 1 where both lie beside alike.
+double beside(double value, std::size_t k) {
   constexpr double kPart = 7.2360679e-4;
-  return value == 0 ? kPart : value * (1 + kPart);
+  const double multiple = static_cast<double>(k) * std::numbers::phi;
+  const double part = kPart * (1 + multiple - std::floor(multiple));
+  return value == 0 ? part : value * (1 + part);
 }
 
 }  // namespace
@@ -52,8 +56,9 @@ Sensitivities::Sensitivities(const network::Program& program, const diagram::Fla
     diagram::FlatBlock& block = other.blocks[b];
     bool changed = false;
     const auto put_beside = [&](std::uint32_t number, double& value) {
-      if (std::find(wanted.begin(), wanted.end(), number) == wanted.end()) return;
-      value = beside(value);
+      const auto found = std::find(wanted.begin(), wanted.end(), number);
+      if (found == wanted.end()) return;
+      value = beside(value, static_cast<std::size_t>(found - wanted.begin()));
       changed = true;
     };
     for (std::size_t k = 0; k < block.parameters.size(); ++k)
@@ -233,16 +238,30 @@ void Sensitivities::start(double t, std::span<const double> x, const network::Wo
   const auto n = static_cast<Eigen::Index>(run_states_.size());
   const std::vector<double> starts = program_->start();
   evaluate_or_refuse(t, x, {});
+  const bool any_at_rest =
+      std::any_of(run_states_.begin(), run_states_.end(), [](const auto& state) { return state.at_rest; });
   const std::vector<double> rates = [&] {
     std::vector<double> all(run_states_.size());
     if (!program_->derivatives(t, x.data(), all.data(), *workspace_)) refuse(t, "an algebraic loop fails");
     return all;
   }();
+  std::vector<double> unit(run_states_.size());
+  // How fast each state would move at the most, were another one off by a machine unit.
+  std::vector<double> steepest(run_states_.size());
+  for (std::size_t j = 0; any_at_rest && j < unit.size(); ++j) {
+    unit[j] = 1;
+    evaluate_or_refuse(t, x, {0, unit, {}});
+    unit[j] = 0;
+    for (std::size_t i = 0; i < steepest.size(); ++i)
+      steepest[i] = std::max(steepest[i], std::abs(values_[layout_.derivatives + i]));
+  }
   std::vector<bool> rests(run_states_.size());
   bool any_rests = false, all_given = true;
   for (std::size_t i = 0; i < rests.size(); ++i) {
-    constexpr double kAtRest = 1e-6;  // of what its own start would make of it
-    rests[i] = run_states_[i].at_rest && std::abs(rates[i]) <= kAtRest * (1 + std::abs(x[i]));
+    constexpr double kAtRest = 1e-6;     // of what its own start would make of it
+    constexpr double kRounding = 1e-12;  // of a machine unit: a fast amplifier makes a rate of it
+    rests[i] = run_states_[i].at_rest &&
+               std::abs(rates[i]) <= std::max(kAtRest, kRounding * steepest[i]) * (1 + std::abs(x[i]));
     any_rests = any_rests || rests[i];
     all_given = all_given && (rests[i] || run_states_[i].start_node || x[i] == starts[i]);
   }
@@ -257,7 +276,6 @@ void Sensitivities::start(double t, std::span<const double> x, const network::Wo
   };
   if (!all_given) refuse(t, "an event has set a state where the run starts");
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-  std::vector<double> unit(run_states_.size());
   const bool dense = any_rests || std::any_of(run_states_.begin(), run_states_.end(),
                                               [](const auto& state) { return state.start_node.has_value(); });
   for (Eigen::Index j = 0; j < n; ++j) {
