@@ -167,6 +167,27 @@ n = {{ type = "counter", clock = "{}*x" }}
   }
 }
 
+// a (cos ωt − 1) comes up to zero, and no farther: what its sign drives behind −9100 stays at 9100. Errors
+// let it pass by some of themselves, and the amplifier goes a percent off for a moment. Where it does, that
+// is told.
+TEST(FaintTurn, IsToldOfWhereErrorsLetALevelBePassed) {
+  for (const double amplitude : {0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.11, 0.12}) {
+    const testing::Compiled made(fmt::format(R"(
+w = {{ type = "sine-source", amplitude = {}, frequency = 3.91203125 }}
+x = {{ type = "integrator", in = "-w", rate = 1.25 }}
+s = {{ type = "sign", in = "2*x" }}
+y = {{ type = "servo-amplifier", in = "s", gain = 9100, bandwidth = 10.335625 }}
+)",
+                                             amplitude),
+                                 "[outputs]\ny = \"y\"\n");
+    const oblique::solve::Run run = testing::run_of(made, {.until = 1.5, .tolerance = 1e-7});
+    const std::vector<double> y = testing::row_values(run, "y");
+    const bool stays = std::all_of(y.begin() + static_cast<std::ptrdiff_t>(y.size() / 5), y.end(),
+                                   [](double value) { return std::abs(value - 9100) < 1; });
+    EXPECT_TRUE(stays || !run.warnings.empty()) << amplitude;
+  }
+}
+
 // What another block sets at an instant does not move a decay: the sign of x = e^(−t/τ) stays, though a lag
 // is set back again and again while x is within rounding of zero.
 TEST(FaintTurn, IsNotMadeByWhatOthersSet) {

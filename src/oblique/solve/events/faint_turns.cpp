@@ -95,7 +95,7 @@ bool FaintTurns::is_faint(const Approach& approach, double error, double excursi
   const bool never_left = is_near && is_slow && last_turn == 0;  // what a step sets off at a rest is not slow
   // What does not slow down comes back at least as fast as it went away: the short flights of a ball.
   const bool decays = excursion >= kAfar * error && is_slow && approach.speed * since < excursion;
-  const bool touches = excursion >= kAfar * error && approach.overshoot <= error;
+  const bool touches = excursion >= kAfar * error && approach.overshoot <= kAfar * error;
   return (approach.before <= error && (decays || has_decayed || never_left)) || touches;
 }
 
