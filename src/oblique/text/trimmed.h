@@ -8,10 +8,10 @@ namespace oblique::text {
 
 /// Without the blanks, the ends of lines and the end of a DOS file around it. Not installed.
 constexpr std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r\n\x1a";
-  const auto first = text.find_first_not_of(blank);
+  constexpr std::string_view kBlank = " \t\r\n\x1a";
+  const auto first = text.find_first_not_of(kBlank);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
 inline std::string trimmed(const std::string& text) {

@@ -23,9 +23,10 @@ Point point_at(const LoopCode& loop, std::span<const Instruction> body, double* 
 }  // namespace
 
 bool find_near_root(const LoopCode& loop, std::span<const Instruction> body, double* slots, double origin) {
-  constexpr double kNear = 0.1, kFirstReach = 1e-16;  // of 1 + |origin|
-  constexpr double kContinuous = 1e-6;  // of the residual at the origin: what may be left of it at a root
-  constexpr int kMostHalvings = 1100;   // from the largest number to the smallest
+  constexpr double kFirstReach = 1e-16;  // of 1 + |origin|
+  constexpr int kReaches = 50;           // each twice the one before: to a tenth
+  constexpr double kContinuous = 1e-6;   // of the residual at the origin: what may be left of it at a root
+  constexpr int kMostHalvings = 1100;    // from the largest number to the smallest
   if (loop.size() != 1) return false;
   const Point here = point_at(loop, body, slots, origin);
   if (!std::isfinite(here.residual)) return false;
@@ -41,7 +42,8 @@ bool find_near_root(const LoopCode& loop, std::span<const Instruction> body, dou
   };
   std::array<Side, 2> sides{Side{-1, origin}, Side{1, origin}};
   const double size = 1 + std::abs(origin);
-  for (double reach = kFirstReach * size; reach <= kNear * size; reach *= 2) {
+  for (int doubled = 0; doubled < kReaches; ++doubled) {
+    const double reach = std::ldexp(kFirstReach * size, doubled);
     for (Side& side : sides) {
       if (!side.open) continue;
       double outer = origin + side.way * reach;

@@ -69,11 +69,8 @@ std::string sum_text(const std::vector<Monomial>& terms, int digits) {
     text += text.empty() ? (minus ? "-" : "") : (minus ? " - " : " + ");
     const std::string size = number_text(std::abs(term.coefficient), digits);
     const std::string product = product_text(term.factors);
-    if (product.empty()) {
-      text += size;
-    } else {
-      text += size == "1" ? product : size + "*" + product;
-    }
+    if (product.empty() || size != "1") text += size;
+    if (!product.empty()) text.append(size == "1" ? "" : "*").append(product);
     if (term.divisors.size() == 1) text += "/" + term.divisors.front();
     if (term.divisors.size() > 1) text += "/(" + product_text(term.divisors) + ")";
   }
