@@ -47,7 +47,7 @@ y = { type = "integrator", in = ["28*x", "-y", "-xz"], initial = 1 }
 xy = { type = "multiplier", in = ["x", "y"] }
 z = { type = "integrator", in = ["xy", "-2.6666666666666665*z"], initial = 1 }
 )toml",
-                      "[outputs]\nx = \"x\"\nz = \"z\"\n");
+                      "[outputs]\nx = \"x\"\nz = \"z\"\nsmall = { signal = \"x\", scale = 0.001 }\n");
   RunOptions options;
   options.samples = 401;
   const oblique::solve::Run result = trusted(made, 40, options);
@@ -58,6 +58,7 @@ z = { type = "integrator", in = ["xy", "-2.6666666666666665*z"], initial = 1 }
   const OutputError& x = result.trust->outputs.front();
   EXPECT_EQ(x.digits(x.at_end), 0);
   ASSERT_TRUE(x.lost);
+  EXPECT_EQ(result.trust->outputs.back().lost, x.lost) << "in whatever unit it is shown";
   EXPECT_GT(*x.lost, 15);
   EXPECT_LT(*x.lost, 40);
   // Where it says that digits stand, they do.

@@ -102,6 +102,24 @@ TEST(ExpressionValue, AsksTheLookupForNames) {
   }
 }
 
+TEST(Expressions, AreEqualInAllTheirParts) {
+  using test::call, test::name, test::node, test::number;
+  using Kind = Expression::Kind;
+  const std::vector<Expression> all{number(1),
+                                    number(2),
+                                    name("a"),
+                                    name("b"),
+                                    node(Kind::add, {name("a"), name("b")}),
+                                    node(Kind::add, {name("b"), name("a")}),
+                                    node(Kind::subtract, {name("a"), name("b")}),
+                                    call(Function::sin, {name("a")}),
+                                    call(Function::cos, {name("a")}),
+                                    call(Function::sin, {name("b")})};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(all[i] == all[k], i == k) << i << " and " << k;
+  }
+}
+
 // How many arguments each has, and whether it has a kink or a jump.
 TEST(Functions, TakeTheirArgumentsAndSwitchOrNot) {
   struct Known {

@@ -86,15 +86,22 @@ const MotionColumn& column(const std::vector<MotionColumn>& columns,
                        text::suggest(expectation.column, names_of(columns))});
 }
 
-/// The largest value of a column, and of the parabola through it and its neighbours.
+/// The largest value of a column, and of the parabola through it and its neighbours, also of a motion that
+/// ends where it begins.
 double maximum_of(const std::vector<double>& values) {
-  std::size_t top = values.size();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isnan(values[i]) && (top == values.size() || values[i] > values[top])) top = i;
+  constexpr double kSame = 1e-9;
+  const std::size_t n = values.size();
+  std::size_t top = n;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!std::isnan(values[i]) && (top == n || values[i] > values[top])) top = i;
   }
-  if (top == values.size()) return std::nan("");
-  if (top == 0 || top + 1 >= values.size()) return values[top];
-  const double rise = values[top] - values[top - 1], fall = values[top] - values[top + 1];
+  if (top == n) return std::nan("");
+  const bool at_end = top == 0 || top + 1 == n;
+  const bool closed =
+      n > 2 && std::abs(values.front() - values.back()) <= kSame * (1 + std::abs(values[top]));
+  if (at_end && !closed) return values[top];
+  const double rise = values[top] - values[top == 0 ? n - 2 : top - 1];
+  const double fall = values[top] - values[top + 1 == n ? 1 : top + 1];
   if (!(rise + fall > 0)) return values[top];
   return values[top] + (rise - fall) * (rise - fall) / (8 * (rise + fall));
 }
