@@ -25,7 +25,9 @@ const framesOf = (page) => page.evaluate(() => new Promise((done) => {
 }));
 
 test("opens class III from a file, runs and moves it, and asks for nothing", async () => {
-  const idle = await idlePart();
+  // A browser that has just been started is busy with itself for a few seconds.
+  let idle = await idlePart();
+  for (const begin = Date.now(); idle < 0.9 && Date.now() - begin < 15000;) idle = await idlePart();
   const {page, requests, troubles, ready} = await opened();
   const size = statSync(studio).size;
   console.log(`page ${(size / 1e6).toFixed(2)} MB (at most 2.5), ready in ${ready} ms (at most 1000 on idle cores; they were idle for ${(100 * idle).toFixed(0)} % before)`);
