@@ -39,21 +39,6 @@ bool is_mode_line(const diagram::FlatBlock& block) {
   return std::max(std::abs(parameter_of(block, "low")), std::abs(parameter_of(block, "high"))) == 1;
 }
 
-/// An element that has its defaults, and nothing at its inputs.
-diagram::FlatBlock element(const diagram::BlockLibrary& library, Role role, std::string path,
-                           const text::Place& place) {
-  diagram::FlatBlock made;
-  made.definition = &element_block(library, role);
-  made.path = std::move(path);
-  made.place = place;
-  for (const diagram::ParameterDefinition& parameter : made.definition->parameters)
-    made.parameters.push_back(parameter.default_value);
-  made.choose_behaviour();
-  for (const diagram::InputPort& input : made.definition->inputs)
-    made.inputs.push_back({{}, input.default_value.value_or(0)});
-  return made;
-}
-
 /// Appends a comparator of `what` with a half; its output.
 diagram::SignalRef compare_with_half(diagram::FlatDiagram& flat, const diagram::BlockLibrary& library,
                                      const std::string& name, diagram::FlatInput what,

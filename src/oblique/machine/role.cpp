@@ -2,6 +2,7 @@
 #include <oblique/machine/role.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,6 +31,20 @@ const diagram::BlockDefinition& element_block(const diagram::BlockLibrary& libra
       fmt::format("no block has the role '{}', which the machine's elements are written with", name),
       fmt::format("role = \"{}\" in a block file", name),
       "a block in the place of a shipped one takes its role too"});
+}
+
+diagram::FlatBlock element(const diagram::BlockLibrary& library, Role role, std::string path,
+                           const text::Place& place) {
+  diagram::FlatBlock made;
+  made.definition = &element_block(library, role);
+  made.path = std::move(path);
+  made.place = place;
+  for (const diagram::ParameterDefinition& parameter : made.definition->parameters)
+    made.parameters.push_back(parameter.default_value);
+  made.choose_behaviour();
+  for (const diagram::InputPort& input : made.definition->inputs)
+    made.inputs.push_back({{}, input.default_value.value_or(0)});
+  return made;
 }
 
 bool has_defaults(const diagram::FlatBlock& block, std::initializer_list<std::string_view> but) {

@@ -26,6 +26,11 @@ bool stays_as_it_is(Role role);
 /// none: a user may have put blocks without roles in the place of the shipped ones.
 const diagram::BlockDefinition& element_block(const diagram::BlockLibrary& library, Role role);
 
+/// A block of a machine's elements of a role that has its defaults, and nothing at its inputs. Throws as
+/// `element_block`.
+diagram::FlatBlock element(const diagram::BlockLibrary& library, Role role, std::string path,
+                           const text::Place& place);
+
 /// Whether the block's parameters, but those of the names given, have their defaults: whether it is free of
 /// imperfections of its own.
 bool has_defaults(const diagram::FlatBlock& block, std::initializer_list<std::string_view> but = {});

@@ -65,8 +65,7 @@ class MachineScaling {
 
   /// Takes note of how far the signals of `realised` go on real elements: further ones get more room, up to
   /// twice as much as they need on ideal ones. By how much the farthest leaves the machine unit, 0 where all
-  /// stay within it. Throws solve::SolveError where
-  /// they do not run within `most_steps`.
+  /// stay within it. Throws solve::SolveError where they do not run within `most_steps`.
   double make_room(const ScaledRealisation& realised, std::int64_t most_steps);
 
  private:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -202,7 +203,7 @@ class Tabulator {
     if (switches_corners_ && has_few_corners) return corners(lines.points, block, path, argument);
     functions_.push_back({path, block.definition->name, static_cast<int>(lines.points.x.size()) - 1,
                           range.low, range.high, lines.error});
-    diagram::FlatBlock generator = element(Role::function_generator, block, path);
+    diagram::FlatBlock generator = element_for(block, Role::function_generator, path);
     const auto& parameters = generator.definition->parameters;
     generator.points.resize(parameters.size());
     for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -215,7 +216,7 @@ class Tabulator {
   /// y = slope · argument + what is left.
   diagram::FlatBlock summer(const text::PointTable& line, const diagram::FlatBlock& block,
                             const std::string& path, const diagram::FlatInput& argument) const {
-    diagram::FlatBlock sum = element(Role::summer, block, path);
+    diagram::FlatBlock sum = element_for(block, Role::summer, path);
     const double slope = line.x.size() < 2 ? 0 : (line.y[1] - line.y[0]) / (line.x[1] - line.x[0]);
     sum.inputs = {argument};
     for (diagram::FlatTerm& term : sum.inputs.front().terms) term.weight *= slope;
@@ -249,11 +250,11 @@ class Tabulator {
       diagram::FlatInput compared = beyond;
       for (diagram::FlatTerm& term : compared.terms) term.weight *= side;
       compared.constant *= side;
-      diagram::FlatBlock above = element(Role::comparator, block, fmt::format("{}.above_{}", path, k));
+      diagram::FlatBlock above = element_for(block, Role::comparator, fmt::format("{}.above_{}", path, k));
       for (std::size_t i = 0; i < above.inputs.size(); ++i) {
         if (above.definition->inputs[i].sum) above.inputs[i] = compared;
       }
-      diagram::FlatBlock passed = element(Role::multiplier, block, fmt::format("{}.beyond_{}", path, k));
+      diagram::FlatBlock passed = element_for(block, Role::multiplier, fmt::format("{}.beyond_{}", path, k));
       passed.inputs = {beyond, {{{1, append(std::move(above))}}, 0}};
       sum.inputs.front().terms.push_back({side * (slopes[k] - slopes[k - 1]), append(std::move(passed))});
     }
@@ -265,18 +266,10 @@ class Tabulator {
     return {flat_.blocks.size() - 1, 0};
   }
 
-  /// An element without inputs that has its defaults.
-  diagram::FlatBlock element(Role role, const diagram::FlatBlock& of, const std::string& path) const {
-    diagram::FlatBlock made;
-    made.definition = &element_block(library_, role);
-    made.path = path;
-    made.place = of.place;
+  /// An element in the group of a block, in its place.
+  diagram::FlatBlock element_for(const diagram::FlatBlock& of, Role role, std::string path) const {
+    diagram::FlatBlock made = element(library_, role, std::move(path), of.place);
     made.group = of.group;
-    for (const diagram::ParameterDefinition& parameter : made.definition->parameters)
-      made.parameters.push_back(parameter.default_value);
-    made.choose_behaviour();
-    for (const diagram::InputPort& input : made.definition->inputs)
-      made.inputs.push_back({{}, input.default_value.value_or(0)});
     return made;
   }
 
@@ -289,7 +282,7 @@ class Tabulator {
       };
       std::string name = "clock";
       while (taken(name)) name += "_";
-      diagram::FlatBlock clock = element(Role::integrator, flat_.blocks.front(), name);
+      diagram::FlatBlock clock = element_for(flat_.blocks.front(), Role::integrator, name);
       for (std::size_t i = 0; i < clock.inputs.size(); ++i) {
         if (clock.definition->inputs[i].sum) clock.inputs[i].constant = 1;
       }
