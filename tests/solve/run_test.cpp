@@ -56,7 +56,7 @@ x = { type = "integrator", in = ["q"] }
   const std::string file = "d.toml";
   SourceWatch watch(made.program, workspace, SourceWatch::Shown::nothing, file);
   const std::vector<double> states = made.program.start();
-  EXPECT_LE(watch.sample_times(0, 3, ConstantStates(states)).size(), 16U);
+  EXPECT_LE(watch.sample_times(0, 3, ConstantStates(states), false).size(), 16U);
 }
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {

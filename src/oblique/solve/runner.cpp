@@ -213,7 +213,7 @@ bool Runner::take_step() {
   t_ = std::min(segments_.end(), t_ + step);
   if (segments_.end() - t_ < kShortest * segments_.end()) t_ = segments_.end();
   switching_.stand_at(from, states_);
-  segments_.take_step(from, t_, sources_.sample_times(from, t_, no_states_), no_states_);
+  segments_.take_step(from, t_, sources_.sample_times(from, t_, no_states_, switching_.slides()), no_states_);
   return true;
 }
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Event functions of states that bend between the steps of a solver, against closed forms.
 #include <cmath>
+#include <numbers>
+#include <span>
 #include <string>
 
 #include <gtest/gtest.h>
+
+#include <oblique/solve/integrator/interpolant.h>
+#include <oblique/solve/integrator/source_watch.h>
 
 #include "../../support/runs.h"
 
@@ -67,6 +72,72 @@ level = { type = "constant", value = 1e-3 }
 c = { type = "comparator", in = ["x", "-q", "-level"] }
 )toml");
   EXPECT_EQ(run_of(made, {.until = 100}).event_count, 0);
+}
+
+// A dip of some 2e-5 s is masked until the state passes a half, a fiftieth of a second before: the same step
+// leads over both, and nothing but a count follows from them.
+TEST(BentComparisons, WhatAnotherUnmasksWithinAStepIsFound) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("own", R"toml(
+[inputs]
+in = {}
+[outputs]
+out = {}
+[memories]
+n = 0
+[equations]
+out = "n"
+[[events]]
+when = "in > 0.5 and 1e-10 > (in - 0.51)*(in - 0.51)"
+set = { n = "n + 1" }
+)toml");
+  const Compiled made(R"toml(
+one = { type = "constant", value = 1 }
+x = { type = "transfer-lag", in = "one", time_constant = 1 }
+n = { type = "own", in = "x" }
+)toml",
+                      "", library);
+  for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
+                            diagram::IntegrationMethod::rodas}) {
+    for (const double tolerance : {1e-3, 1e-6})
+      EXPECT_EQ(
+          row_values(run_of(made, {.until = 2, .tolerance = tolerance, .method = method}), "n").back(),
+          1);
+  }
+}
+
+/// x goes up and back within [0, 1], in half a turn.
+class Excursion final : public Interpolant {
+ public:
+  void states_at(double t, std::span<double> states) const override {
+    states[0] = std::sin(std::numbers::pi * t);
+  }
+  void rates_at(double t, std::span<double> rates) const override {
+    rates[0] = std::numbers::pi * std::cos(std::numbers::pi * t);
+  }
+};
+
+// What drives an integrator passes zero several times on the way: x³ − 3/2 x² + 0.6 x − 0.04 of x, near to it
+// between 0.1 and 1. Within its limits nobody looks; beyond them, or where a slide may have it otherwise,
+// that is done.
+TEST(BentComparisons, ThatAreMaskedAreNotLookedAt) {
+  const Compiled made(R"toml(
+q = { type = "squarer", in = "x" }
+c = { type = "multiplier", in = ["q", "x"] }
+level = { type = "constant", value = 0.04 }
+x = { type = "integrator", in = ["c", "-1.5*q", "0.6*x", "-level"], limit = 1.2 }
+)toml");
+  network::Workspace workspace(made.program);
+  const std::string file = "d.toml";
+  SourceWatch watch(made.program, workspace, SourceWatch::Shown::nothing, file);
+  const Excursion solution;
+  EXPECT_GT(watch.sample_times(0, 1, solution, true).size(), 4U);
+  EXPECT_EQ(watch.sample_times(0, 1, solution, false).size(), 1U);
+  EXPECT_FALSE(watch.acts_anew());
+  for (const network::Source& source : made.program.sources()) {
+    for (const network::Mask& mask : source.masks) workspace.set_discrete_state(mask.discrete_state, 1);
+  }
+  EXPECT_TRUE(watch.acts_anew());
+  EXPECT_GT(watch.sample_times(0, 1, solution, false).size(), 4U);
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ struct Compilation {
     NodeId value, derivative;
     bool acts, by_states;
     std::optional<std::uint32_t> switch_index;
+    std::vector<Mask> masks;
   };
 
   Needs no_needs() const;

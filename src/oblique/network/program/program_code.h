@@ -9,6 +9,7 @@
 
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/loop_solver.h>
+#include <oblique/network/program/masks.h>
 #include <oblique/network/program/switch_structure.h>
 
 namespace oblique::network {
@@ -30,6 +31,9 @@ struct Source {
   bool acts = false;                            ///< on dx/dt, or on the event function of a switch
   bool by_states = false;
   std::optional<std::uint32_t> switch_index;  ///< the switch whose whole event function it is
+  /// Of one by states what masks this switch. None of it is of a switch that is such a source itself: of two
+  /// that mask each other one is looked at.
+  std::vector<Mask> masks;
 };
 
 /// What a Program consists of: the tape, and where on it and on its slots everything stands. Compilation

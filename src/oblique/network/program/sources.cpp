@@ -93,7 +93,7 @@ void find_peaks(Compilation& c, const std::vector<bool>& acts, const std::vector
   for (auto id = static_cast<NodeId>(graph.size()); id-- > 0;) {
     const Node& node = graph[id];
     const bool peak = acts[id] && !covered[id] && follows_states(id) && !by_unknowns[id] && makes_peaks(node);
-    if (peak) c.sources.push_back({id, id, true, true, std::nullopt});
+    if (peak) c.sources.push_back({id, id, true, true, std::nullopt, {}});
     for (int i = 0; i < operand_count(node.op); ++i) {
       const NodeId child = node.operand(i);
       covered[child] = covered[child] || covered[id] || peak;
@@ -135,6 +135,20 @@ std::vector<bool> bent_nodes(const ExpressionGraph& graph, const std::vector<Fol
   return bent;
 }
 
+/// Notes what masks the comparisons among the sources.
+void mask_comparisons(Compilation& c) {
+  const std::vector<std::vector<Mask>> masks = find_masks(c.network, c.positions);
+  std::set<std::uint32_t> looked_at;
+  for (const Compilation::FoundSource& source : c.sources) {
+    if (source.switch_index) looked_at.insert(c.network.switches[*source.switch_index].discrete_state);
+  }
+  for (Compilation::FoundSource& source : c.sources) {
+    if (!source.switch_index) continue;
+    source.masks = masks[*source.switch_index];
+    std::erase_if(source.masks, [&](const Mask& mask) { return looked_at.contains(mask.discrete_state); });
+  }
+}
+
 /// The event functions of switches that read states, and bend: a peak of the time, or a valley of the states,
 /// that leads over a level and back may be far smaller than what it stands on.
 void find_bent_comparisons(Compilation& c, const std::vector<Follows>& follows) {
@@ -160,8 +174,9 @@ void find_bent_comparisons(Compilation& c, const std::vector<Follows>& follows) 
     for (const std::size_t state : states) {
       if (known.insert(state).second) c.code.source_states.push_back(state);
     }
-    c.sources.push_back({root, root, true, true, s});
+    c.sources.push_back({root, root, true, true, s, {}});
   }
+  mask_comparisons(c);
 }
 
 /// Bounds of what follows the time through sums, products, sines and cosines: of its magnitude, and of how
@@ -310,7 +325,7 @@ void find_sources(Compilation& c) {
   for (NodeId id = 0; id < size; ++id) {
     if (!is_root[id] || follows[id] != Follows::time) continue;
     source_of.emplace(id, c.sources.size());
-    c.sources.push_back({id, derivatives.of(id), acts[id], false, std::nullopt});
+    c.sources.push_back({id, derivatives.of(id), acts[id], false, std::nullopt, {}});
   }
   for (std::size_t s = 0; s < c.network.switches.size(); ++s) {
     const auto same = source_of.find(c.network.switches[s].event_function);
@@ -341,7 +356,7 @@ void write_sources(Compilation& c) {
   }
   for (const Compilation::FoundSource& source : c.sources)
     c.code.sources.push_back({c.writer->slot(source.value), c.writer->slot(source.derivative), source.acts,
-                              source.by_states, source.switch_index});
+                              source.by_states, source.switch_index, source.masks});
 }
 
 }  // namespace oblique::network

@@ -261,12 +261,12 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
     if (!parts_.switching.derivatives(times[k], states_there[k].data(), after.data()) || before[k] != after)
       return false;
   }
-  // A memory or a clock may have opened the way to something short, which was not seen where the step was
-  // looked at.
-  if (!memories_stand || parts_.switching.lets_pass()) {
+  // A memory, a clock or a comparison may have opened the way to something short, which was not seen where
+  // the step was looked at.
+  if (!memories_stand || parts_.switching.lets_pass() || parts_.sources.acts_anew()) {
     const auto left =
         std::count_if(sample_times.begin(), sample_times.end(), [&](double time) { return time > at; });
-    if (std::ssize(parts_.sources.sample_times(at, step_.end, solution)) > left) return false;
+    if (std::ssize(parts_.sources.sample_times(at, step_.end, solution, false)) > left) return false;
   }
   // And it may have brought the next switch forward that follows the time alone.
   const auto wait = parts_.switching.known_wait(at, parts_.states, EventLocation::Of::ends_of_segments);

@@ -72,6 +72,7 @@ SourceWatch::SourceWatch(const network::Program& program, const network::Workspa
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   largest_.assign(watched_.size(), 0);
   seen_.assign(watched_.size(), {kInfinity, -kInfinity});
+  masked_.assign(watched_.size(), false);
   if (!active()) return;
   ranges_.resize(program.source_states().size());
   states_.resize(program.n_states());
@@ -151,6 +152,7 @@ SourceWatch::Hidden SourceWatch::hidden(double from, const Values& at_from, doub
   bound(from, at_from, to, at_to);
   Hidden found = Hidden::nothing;
   for (std::size_t k = 0; k < watched_.size(); ++k) {
+    if (masked_[k]) continue;
     const double a = at_from.sources[k], b = at_to.sources[k];
     network::Interval value = slots_[watched_[k].slot];
     if (!watched_[k].by_states) {
@@ -210,8 +212,23 @@ void SourceWatch::part(double from, const Values& at_from, double to, const Valu
   take(middle, at_middle, to, at_to, second);
 }
 
-const std::vector<double>& SourceWatch::sample_times(double from, double to, const Interpolant& solution) {
+bool SourceWatch::is_masked(const network::Source& source) const {
+  return std::any_of(source.masks.begin(), source.masks.end(), [&](const network::Mask& mask) {
+    return workspace_.discrete_state(mask.discrete_state) == mask.value;
+  });
+}
+
+bool SourceWatch::acts_anew() const {
+  for (std::size_t k = 0; k < watched_.size(); ++k) {
+    if (masked_[k] && !is_masked(watched_[k])) return true;
+  }
+  return false;
+}
+
+const std::vector<double>& SourceWatch::sample_times(double from, double to, const Interpolant& solution,
+                                                     bool slides) {
   times_.clear();
+  for (std::size_t k = 0; k < watched_.size(); ++k) masked_[k] = !slides && is_masked(watched_[k]);
   if (!active() || !(to > from)) {
     times_.push_back(to);
     return times_;

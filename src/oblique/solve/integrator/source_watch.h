@@ -37,8 +37,12 @@ class SourceWatch {
   bool active() const { return !watched_.empty(); }
 
   /// Times in (from, to], ascending, the last one `to`, at which to look. `to` alone where nothing is hidden.
-  /// Throws SolveError where there are more than it may look at.
-  const std::vector<double>& sample_times(double from, double to, const Interpolant& solution);
+  /// Throws SolveError where there are more than it may look at. Which comparisons others mask the discrete
+  /// states tell, but during a slide.
+  const std::vector<double>& sample_times(double from, double to, const Interpolant& solution, bool slides);
+
+  /// Whether a comparison acts now that others masked when it was last asked.
+  bool acts_anew() const;
 
  private:
   /// At one time: the sources, and the source states with their rates.
@@ -53,6 +57,7 @@ class SourceWatch {
   bool hides_extreme(std::size_t k, double a, double b, const network::Interval& range) const;
   Values values_at(double t);
   void bound(double from, const Values& at_from, double to, const Values& at_to);
+  bool is_masked(const network::Source& source) const;
 
   const network::Program& program_;
   const network::Workspace& workspace_;
@@ -66,6 +71,7 @@ class SourceWatch {
   std::vector<network::Interval> ranges_;  ///< of the source states
   std::vector<double> largest_;            ///< magnitude of each source so far
   std::vector<network::Interval> seen_;    ///< values of each source so far
+  std::vector<bool> masked_;               ///< each source, when it was last asked
   std::vector<double> times_;
   int parts_for_states_ = 0;  ///< of this step, in which an event function of states had to be looked at
   int parts_for_peaks_ = 0;   ///< which may still be parted for peaks of states alone, here
