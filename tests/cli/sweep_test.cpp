@@ -127,12 +127,13 @@ TEST_F(Sweep, KeepsWhatIsDoneWhereCtrlCEndsIt) {
         run_command("timeout --preserve-status -s INT " + seconds + " oblique sweep " + decay_ +
                         " --vary x.initial=0..1:1000000 --jobs 2 --measure 'start(x)' -o " + file("t.csv"),
                     OBLIQUE_SOURCE_DIR);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("interrupted: "));
+    if (outcome.err.find("there is nothing to write") != std::string::npos) continue;
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr(" of 1000000 machines were run\nwrote "));
     std::string header;
     rows = csv_rows(file("t.csv"), header);
-    if (!rows.empty()) break;
+    break;
   }
   EXPECT_GE(rows.size(), 1U);
   EXPECT_LT(rows.size(), 1'000'000U);

@@ -18,7 +18,6 @@
 #include <oblique/network/program/program.h>
 #include <oblique/report/atlas/published_check.h>
 #include <oblique/report/expectation_check.h>
-#include <oblique/report/file_kind.h>
 #include <oblique/text/file.h>
 
 #include "../support/rate_errors.h"
@@ -50,14 +49,19 @@ std::string path_of(const std::string& name) {
   return std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/" + name;
 }
 
-/// The diagrams that have a line which begins so.
+/// Whether a line of the text begins so.
+bool has_line(std::string_view text, std::string_view begin) {
+  return text.starts_with(begin) || text.find('\n' + std::string(begin)) != std::string_view::npos;
+}
+
+/// The diagrams that have a line which begins so. Every test asks, in a process of its own: that nothing is
+/// parsed saves a quarter of the time of them all.
 std::vector<std::string> diagrams_with(std::string_view begin_of_line) {
   std::vector<std::string> names;
   for (const char* const folder : {"historical", "lessons", "atlas", "course"}) {
     for (const std::string& name : files_in(folder)) {
       const std::string text = text::read_file(path_of(name));
-      if (report::kind_of_file(text, name) == report::FileKind::diagram &&
-          ("\n" + text).find("\n" + std::string(begin_of_line)) != std::string::npos)
+      if (!has_line(text, R"(format = "oblique-mechanism/1")") && has_line(text, begin_of_line))
         names.push_back(name);
     }
   }
