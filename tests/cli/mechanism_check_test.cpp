@@ -179,6 +179,8 @@ TEST_F(MechanismCheck, JsonHasTheDocumentedKeysAlone) {
   EXPECT_NEAR(piston.at("stroke").get<double>(), std::sqrt(38400.) - std::sqrt(8400.), 1e-10);
   EXPECT_EQ(answer.at("instant_centres").size(), 3U);
   EXPECT_NEAR(answer.at("inertia").at("bars").at(1).at("inertia").get<double>(), 0.9 * 0.0225 / 12, 1e-17);
+  const std::string four_bar = OBLIQUE_SOURCE_DIR "/diagrams/mechanisms/four-bar.toml";  // without masses
+  EXPECT_TRUE(nlohmann::json::parse(oblique("check --json " + four_bar).out).at("inertia").is_null());
 }
 
 TEST_F(MechanismCheck, OfAStructureNeedsNoDrive) {

@@ -32,7 +32,7 @@ TEST_F(Sweep, WritesARowForEachCombination) {
   EXPECT_EQ(outcome.status, 2);  // start is a function
   const Outcome again = oblique("sweep " + decay_ +
                                 " --vary 'x.in[1]=-1,-2' --vary x.initial=0.5..1:2 --measure 'max(x)'"
-                                " --measure 'late = time(x <= 0.4)' -o " +
+                                " --measure 'late=time(x <= 0.4)' -o " +
                                 file("t.csv"));
   ASSERT_EQ(again.status, 0) << again.err;
   std::string header;

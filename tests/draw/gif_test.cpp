@@ -136,5 +136,15 @@ TEST(Gif, IsRefusedWhereItCannotBe) {
   EXPECT_THROW(read_gif("GIF89a"), std::runtime_error);
 }
 
+TEST(Gif, HoldsASinglePoint) {
+  draw::Raster point;
+  point.width = point.height = 1;
+  point.pixels = {{10, 20, 30}};
+  const ShownGif gif = read_gif(draw::encode_gif(
+      1, [&](std::size_t) { return point; }, 4));
+  EXPECT_EQ(gif.width, 1);
+  EXPECT_EQ(gif.frames.at(0).pixels, point.pixels);
+}
+
 }  // namespace
 }  // namespace oblique::test

@@ -97,5 +97,61 @@ TEST(LinkageParts, SupportIsATriangleUnderItsPin) {
   EXPECT_GT(ground[1].x(), corners[2].x());
 }
 
+// The pin of a crank slides beside a lever of 50, 10 to 30 from its bearing: the line of the slide is as long
+// as the lever, on its left, and goes an overhang beyond the nearer end.
+TEST(LinkageParts, TheLineOfASlideOnALinkReachesItsEnds) {
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(R"toml(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [20, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 10 }
+lever = { points = ["D", "S"], length = 50 }
+[slides]
+slot = { point = "B", along = ["D", "S"], offset = 3 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1 }
+[sketch]
+S = [-30, 5]
+)toml",
+                                                                    "m.toml");
+  const auto parts = parts_of(mechanism);
+  const auto lever = std::find_if(parts.begin(), parts.end(), [](const draw::LinkagePart& part) {
+    return part.carrier == Carrier::body && part.index == 1;
+  });
+  ASSERT_NE(lever, parts.end());
+  const std::vector<Vector2d> line = corners_of_part(lever->marks.at(0));
+  ASSERT_EQ(line.size(), 2U);
+  EXPECT_DOUBLE_EQ(line[0].y(), -3 * kScale);
+  EXPECT_DOUBLE_EQ(line[1].y(), -3 * kScale);
+  EXPECT_LE(line[0].x(), 0);
+  EXPECT_DOUBLE_EQ(line[1].x(), 50 * kScale);
+}
+
+// A link is a plate by its form, however small it is: one of 10 µm, given in metres.
+TEST(LinkageParts, ASmallPlateIsAPlate) {
+  const mechanism::Mechanism mechanism = mechanism::parse_mechanism(R"toml(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+[bodies]
+ABC = { points = ["A", "B"], length = 1e-5, marks = { C = [0.5e-5, 0.5e-5] } }
+AD = { points = ["A", "D"], length = 1e-5, marks = { E = [0.5e-5, 0] } }
+[drives]
+crank = { turns = "ABC", about = "A", speed = 1 }
+other = { turns = "AD", about = "A", speed = 1 }
+)toml",
+                                                                    "m.toml");
+  std::vector<std::vector<std::string>> marks;  // of each part of a link
+  for (const draw::LinkagePart& part :
+       draw::linkage_parts(mechanism, mechanism::solve_motion(mechanism, 3).configurations, kScale * 1e7)) {
+    if (part.carrier != Carrier::body) continue;
+    std::vector<std::string>& ids = marks.emplace_back();
+    for (const draw::Mark& mark : part.marks) ids.push_back(mark.id);
+  }
+  using Ids = std::vector<std::string>;  // what is inside a plate lies under all else
+  EXPECT_THAT(marks, ::testing::UnorderedElementsAre(Ids{"inside-ABC"}, Ids{"body-ABC"},
+                                                     Ids{"inside-AD", "body-AD"}));
+}
+
 }  // namespace
 }  // namespace oblique::test

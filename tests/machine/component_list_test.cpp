@@ -226,5 +226,23 @@ k = { type = "limiter", in = "x", low = 0, high = "inf" }
   EXPECT_EQ(counted.verdict(), ComponentList::Verdict::cannot_tell);
 }
 
+// What a shipped block without a role requires of a kind that has blocks of its own is counted with them.
+TEST(ComponentList, CountsWhatIsRequiredWithTheElementsOfItsKind) {
+  const diagram::BlockLibrary library =
+      testing::shipped_blocks_and("own",
+                                  "[requires]\nmultiplier = \"2\"\n[inputs]\nin = {}\n[outputs]\nout = {}\n"
+                                  "[equations]\nout = \"in^4\"\n");
+  const ComponentList counted = component_list_of(
+      diagram::flatten(diagram::parse_diagram(
+                           testing::diagram_text("x = { type = \"integrator\", in = \"m\" }\n"
+                                                 "o = { type = \"own\", in = \"x\" }\n"
+                                                 "m = { type = \"multiplier\", in = [\"o\", \"x\"] }\n"),
+                           "d.toml"),
+                       library),
+      inverting_machine());
+  EXPECT_EQ(row(counted, "multipliers").needed, 3);
+  EXPECT_THAT(row(counted, "multipliers").blocks, ElementsAre("m", "o"));
+}
+
 }  // namespace
 }  // namespace oblique::machine

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -151,6 +152,19 @@ TEST(Interval, ContainsNoiseThatItSamples) {
       EXPECT_LE(value, range.high) << k;
     }
   }
+}
+
+// Enclosures that are no wider than they need be: 1 … 4 to the power of ½, and of −½ … ½.
+TEST(Interval, APowerOfPositiveNumbersIsThatOfTheCorners) {
+  ExpressionGraph graph;
+  const NodeId power = graph.apply(Op::power, graph.variable(0), graph.variable(1));
+  const auto of = [&](Interval x, Interval y) { return range_of(graph, power, std::array{x, y}); };
+  const Interval root = of({1, 4}, {0.5, 0.5}), both = of({1, 4}, {-0.5, 0.5});
+  EXPECT_DOUBLE_EQ(root.low, 1);
+  EXPECT_DOUBLE_EQ(root.high, 2);
+  EXPECT_DOUBLE_EQ(both.low, 0.5);
+  EXPECT_DOUBLE_EQ(both.high, 2);
+  EXPECT_EQ(of({-1, 4}, {0.5, 0.5}).high, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

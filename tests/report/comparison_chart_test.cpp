@@ -35,6 +35,7 @@ TEST(ComparisonChart, DrawsTheRunsOfEachSeriesWhereOneIsLeftOut) {
   EXPECT_EQ(errors[1].points, (std::vector<Eigen::Vector2d>{{1e3, 2e-3}, {1e4, 2e-4}}));
   ASSERT_EQ(chart.panels[1].curves.size(), 1U);
   ASSERT_EQ(chart.panels[2].curves.size(), 2U);
+  ASSERT_EQ(chart.panels[2].curves[0].points.size(), 2U);  // as many as the run has rows
   EXPECT_EQ(chart.panels[2].curves[0].points[1].y(), 1e-3);
   EXPECT_EQ(chart.panels[2].curves[1].points[1].y(), 1e-4);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/report/study/effects.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -80,6 +81,30 @@ TEST(Study, IsDrawnAsAHistogramWhereElementsScatter) {
   const auto& steps = panel.curves[0].points;
   for (std::size_t k = 1; k + 1 < steps.size(); k += 2) machines += steps[k].y();
   EXPECT_EQ(machines, 1000);
+}
+
+// Over one varied number: where elements scatter on a grid, the median of each place is a dotted line with a
+// band; drawn points without a grid are marks.
+TEST(Study, IsDrawnAsALineOverAGridAndAsMarksWithoutOne) {
+  StudyResult result;
+  result.columns = {{"a"}, {"y"}};
+  result.n_varied = 1;
+  result.logarithmic = {false};
+  result.drawn = 3;
+  for (const double a : {0.0, 1.0}) {
+    for (const double y : {1.0, 2.0, 3.0}) result.done.rows.push_back({0, {a, a + y}, ""});
+  }
+  for (const bool grid : {true, false}) {
+    result.grid = grid;
+    const draw::Panel panel = chart_of(result).panels.front();
+    const auto middle = std::find_if(panel.curves.begin(), panel.curves.end(), [](const draw::Curve& curve) {
+      return curve.style != draw::Curve::Style::band;
+    });
+    ASSERT_NE(middle, panel.curves.end());
+    EXPECT_EQ(middle->name, grid ? "median" : "");
+    EXPECT_EQ(middle->style, grid ? draw::Curve::Style::dotted_line : draw::Curve::Style::marks);
+    EXPECT_EQ(middle->points.at(1), Eigen::Vector2d(1, 3));
+  }
 }
 
 }  // namespace

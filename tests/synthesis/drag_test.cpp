@@ -204,6 +204,9 @@ TEST(Drag, SaysWhatItCannotDo) {
   EXPECT_EQ(message_of([&] { four_bar.dragged("C", four_bar.place("B") - four_bar.place("C")); }),
             "m.toml: 'C' cannot be dragged there: body 'BCF' would have no length\n"
             "  remedy: drag it elsewhere");
+  EXPECT_EQ(message_of([&] { four_bar.dragged("B", four_bar.place("A") - four_bar.place("B")); }),
+            "m.toml: 'B' cannot be dragged there: body 'AB' would have no length\n"
+            "  remedy: drag it elsewhere");
   const Case block(R"(format = "oblique-mechanism/1"
 [frame]
 A = [0, 0]

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -234,8 +235,7 @@ class Writer {
   }
 
   void write_references() {
-    std::vector<diagram::BlockInstance> elements = std::move(result_.blocks);
-    result_.blocks.clear();
+    std::vector<diagram::BlockInstance> elements = std::exchange(result_.blocks, {});
     const auto& [plus, minus] = signals_.references();
     if (!plus.empty()) add_block(plus, Role::reference, {diagram::number_setting("value", 1)});
     if (!minus.empty()) add_block(minus, Role::reference, {diagram::number_setting("value", -1)});
