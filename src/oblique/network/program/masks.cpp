@@ -85,12 +85,20 @@ class Finder {
 
 }  // namespace
 
-std::vector<std::vector<Mask>> find_masks(const Network& network, const std::vector<NodeId>& nodes) {
+std::vector<std::vector<Mask>> find_masks(const Network& network) {
   const Finder finder(network);
-  std::vector<std::vector<Mask>> masks;
-  masks.reserve(nodes.size());
-  for (const NodeId id : nodes) masks.push_back(finder.of(id));
+  std::vector<Masks> of_discrete_states(network.discrete_states.size()), masks;
+  for (NodeId id = 0; id < network.graph.size(); ++id) {
+    if (network.graph[id].op == Op::discrete_state)
+      of_discrete_states[network.graph[id].variable] = finder.of(id);
+  }
+  for (const Switch& s : network.switches) masks.push_back(of_discrete_states[s.discrete_state]);
   return masks;
+}
+
+bool is_masked(std::span<const Mask> masks, std::span<const double> discrete_states) {
+  return std::any_of(masks.begin(), masks.end(),
+                     [&](const Mask& mask) { return discrete_states[mask.discrete_state] == mask.value; });
 }
 
 }  // namespace oblique::network

@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <oblique/network/assembly/network.h>
@@ -17,8 +18,11 @@ struct Mask {
   auto operator<=>(const Mask&) const = default;
 };
 
-/// Of each of these nodes what masks it: as long as any of its masks has its value, nothing that the network
-/// reads depends on the node. Ascending.
-std::vector<std::vector<Mask>> find_masks(const Network& network, const std::vector<NodeId>& nodes);
+/// Of the position of each switch what masks it: as long as any of its masks has its value, nothing that the
+/// network reads depends on the position. Ascending.
+std::vector<std::vector<Mask>> find_masks(const Network& network);
+
+/// Whether one of them has its value.
+bool is_masked(std::span<const Mask> masks, std::span<const double> discrete_states);
 
 }  // namespace oblique::network

@@ -9,7 +9,6 @@
 
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/loop_solver.h>
-#include <oblique/network/program/masks.h>
 #include <oblique/network/program/switch_structure.h>
 
 namespace oblique::network {
@@ -31,8 +30,8 @@ struct Source {
   bool acts = false;                            ///< on dx/dt, or on the event function of a switch
   bool by_states = false;
   std::optional<std::uint32_t> switch_index;  ///< the switch whose whole event function it is
-  /// Of one by states what masks this switch. None of it is of a switch that is such a source itself: of two
-  /// that mask each other one is looked at.
+  /// Of one by states what masks this switch, but no switch that is such a source itself: of two that mask
+  /// each other both are looked at.
   std::vector<Mask> masks;
 };
 

@@ -137,14 +137,13 @@ std::vector<bool> bent_nodes(const ExpressionGraph& graph, const std::vector<Fol
 
 /// Notes what masks the comparisons among the sources.
 void mask_comparisons(Compilation& c) {
-  const std::vector<std::vector<Mask>> masks = find_masks(c.network, c.positions);
   std::set<std::uint32_t> looked_at;
   for (const Compilation::FoundSource& source : c.sources) {
     if (source.switch_index) looked_at.insert(c.network.switches[*source.switch_index].discrete_state);
   }
   for (Compilation::FoundSource& source : c.sources) {
     if (!source.switch_index) continue;
-    source.masks = masks[*source.switch_index];
+    source.masks = c.code.switch_structure.masks[*source.switch_index];
     std::erase_if(source.masks, [&](const Mask& mask) { return looked_at.contains(mask.discrete_state); });
   }
 }

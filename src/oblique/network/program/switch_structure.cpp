@@ -26,6 +26,7 @@ class Finder {
     find_units();
     find_operands();
     find_couplings();
+    structure_.masks = find_masks(network_);
     return std::move(structure_);
   }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <oblique/network/assembly/network.h>
+#include <oblique/network/program/masks.h>
 
 namespace oblique::network {
 
@@ -52,7 +53,8 @@ struct SwitchStructure {
   std::vector<std::uint32_t> switch_at;                   ///< of each node: the switch whose position it is
   std::vector<std::uint32_t> discrete_state_at, loop_at;  ///< of each node: what it is, the unknown of a loop
   std::size_t n_discrete_states = 0;
-  std::vector<NodeId> event_functions;  ///< of each switch
+  std::vector<NodeId> event_functions;   ///< of each switch
+  std::vector<std::vector<Mask>> masks;  ///< of each switch what masks its position
 };
 
 SwitchStructure find_switch_structure(const Network& network);

@@ -212,15 +212,9 @@ void SourceWatch::part(double from, const Values& at_from, double to, const Valu
   take(middle, at_middle, to, at_to, second);
 }
 
-bool SourceWatch::is_masked(const network::Source& source) const {
-  return std::any_of(source.masks.begin(), source.masks.end(), [&](const network::Mask& mask) {
-    return workspace_.discrete_state(mask.discrete_state) == mask.value;
-  });
-}
-
 bool SourceWatch::acts_anew() const {
   for (std::size_t k = 0; k < watched_.size(); ++k) {
-    if (masked_[k] && !is_masked(watched_[k])) return true;
+    if (masked_[k] && !is_masked(watched_[k].masks, workspace_.discrete_states())) return true;
   }
   return false;
 }
@@ -228,7 +222,8 @@ bool SourceWatch::acts_anew() const {
 const std::vector<double>& SourceWatch::sample_times(double from, double to, const Interpolant& solution,
                                                      bool slides) {
   times_.clear();
-  for (std::size_t k = 0; k < watched_.size(); ++k) masked_[k] = !slides && is_masked(watched_[k]);
+  for (std::size_t k = 0; k < watched_.size(); ++k)
+    masked_[k] = !slides && is_masked(watched_[k].masks, workspace_.discrete_states());
   if (!active() || !(to > from)) {
     times_.push_back(to);
     return times_;

@@ -57,7 +57,6 @@ class SourceWatch {
   bool hides_extreme(std::size_t k, double a, double b, const network::Interval& range) const;
   Values values_at(double t);
   void bound(double from, const Values& at_from, double to, const Values& at_to);
-  bool is_masked(const network::Source& source) const;
 
   const network::Program& program_;
   const network::Workspace& workspace_;
