@@ -46,6 +46,8 @@ TEST(Machines, AreToldAllAbout) {
   EXPECT_THAT(outcome.out, HasSubstr("THE ANALOG THING (the-analog-thing)\n"));
   EXPECT_THAT(outcome.out, ContainsRegex("machine unit +10 V\n"));
   EXPECT_THAT(outcome.out, ContainsRegex("time factors k0 \\[1/s\\] +10, 1000\n"));
+  EXPECT_THAT(outcome.out, ContainsRegex("coefficients +0 … 1\n"));
+  EXPECT_THAT(oblique("machines lucidac").out, ContainsRegex("coefficients +−1 … 1\n"));
   EXPECT_THAT(outcome.out, ContainsRegex("multiplier +2 +AD633JR\n"));
   EXPECT_THAT(outcome.out,
               ContainsRegex("comparator, hysteresis +about 170 mV +\\[one user's measurement\\]\n"));

@@ -409,5 +409,25 @@ r   = { type = "integrator", in = "v", initial = 1 }
   for (const SignalScale& scale : made.scales) EXPECT_GT(scale.unit, 0.1) << scale.signal;
 }
 
+// A function of one signal becomes a function generator; of two it has no lines to be set by.
+TEST(ScaledRealisation, TabulatesFunctionsOfOneSignalAlone) {
+  diagram::BlockLibrary library = shipped_blocks();
+  const auto add = [&](const std::string& name, const std::string& inputs, const std::string& out) {
+    library.add(diagram::parse_block("format = \"oblique-block/1\"\ntitle = \"t\"\n[inputs]\n" + inputs +
+                                         "[outputs]\nout = {}\n[equations]\nout = \"" + out + "\"\n",
+                                     name + ".toml", name));
+  };
+  add("one", "a = {}\n", "exp(a)");
+  add("two", "a = {}\nb = {}\n", "exp(a*b)");
+  const std::string x = "[blocks]\nx = { type = \"integrator\", in = \"-p\", initial = 0.5 }\n";
+  const std::string one = "p = { type = \"one\", a = \"x\" }\n",
+                    two = "p = { type = \"two\", a = \"x\", b = \"x\" }\n";
+  EXPECT_THAT(diagram::write_diagram(realise_scaled(parsed(x + one), library, desk_machine()).diagram),
+              HasSubstr("function-generator"));
+  EXPECT_THAT(
+      testing::message_of<RealiseError>([&] { realise_scaled(parsed(x + two), library, desk_machine()); }),
+      HasSubstr("'p'"));
+}
+
 }  // namespace
 }  // namespace oblique::machine

@@ -40,6 +40,9 @@ C = [3.5, 2]
   EXPECT_NEAR(distance(0), 4, 1e-3);
   EXPECT_NEAR(distance(4), 4, 1e-3);
   EXPECT_LT(distance(2), 3.5);
+  for (const int positions : {2, 3, 6})
+    EXPECT_EQ(linkage_scene(swinging, 0, positions).scene.others.size(),
+              static_cast<std::size_t>(positions - 1));
 }
 
 mechanism::Mechanism crank(const std::string& more) {

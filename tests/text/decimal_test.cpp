@@ -74,6 +74,8 @@ TEST(Decimal, IsReadAsTheStandardLibraryReadsIt) {
                                  "infin",
                                  "nan",
                                  "-NaN",
+                                 "NAN",
+                                 "nan(A)",
                                  "nan(ab_1)",
                                  "nan(a",
                                  "nan()",

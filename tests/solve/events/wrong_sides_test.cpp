@@ -30,6 +30,7 @@ Compiled swing_of(double a) {
 one = {{ type = "constant" }}
 d = {{ type = "sine-source", amplitude = "2*pi*{0}", phase = "pi/2" }}
 x = {{ type = "integrator", in = "d", initial = "1 - {0}/2" }}
+always = {{ type = "comparator", in = ["x"] }}
 c = {{ type = "comparator", in = ["x", "-one"] }}
 )",
                               a));

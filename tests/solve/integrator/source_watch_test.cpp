@@ -99,9 +99,8 @@ n = { type = "own", in = "x" }
   for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
                             diagram::IntegrationMethod::rodas}) {
     for (const double tolerance : {1e-3, 1e-6})
-      EXPECT_EQ(
-          row_values(run_of(made, {.until = 2, .tolerance = tolerance, .method = method}), "n").back(),
-          1);
+      EXPECT_EQ(row_values(run_of(made, {.until = 2, .tolerance = tolerance, .method = method}), "n").back(),
+                1);
   }
 }
 
@@ -138,6 +137,27 @@ x = { type = "integrator", in = ["c", "-1.5*q", "0.6*x", "-level"], limit = 1.2 
   }
   EXPECT_TRUE(watch.acts_anew());
   EXPECT_GT(watch.sample_times(0, 1, solution, false).size(), 4U);
+}
+
+/// x goes from 0 to 0.9 in a second, straight on.
+class Way final : public Interpolant {
+ public:
+  void states_at(double t, std::span<double> states) const override { states[0] = 0.9 * t; }
+  void rates_at(double, std::span<double> rates) const override { rates[0] = 0.9; }
+};
+
+// x² is zero at the beginning, and its bounds say that it goes no further the other way.
+TEST(BentComparisons, ThatBeginAtZeroAreNotLookedAtForThat) {
+  const Compiled made(R"toml(
+q = { type = "squarer", in = "x" }
+c = { type = "comparator", in = "q" }
+x = { type = "integrator", in = "q" }
+)toml");
+  const network::Workspace workspace(made.program);
+  const std::string file = "d.toml";
+  SourceWatch watch(made.program, workspace, SourceWatch::Shown::nothing, file);
+  ASSERT_TRUE(watch.active());
+  EXPECT_EQ(watch.sample_times(0, 1, Way(), false).size(), 1U);
 }
 
 }  // namespace
