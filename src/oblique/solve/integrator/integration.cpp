@@ -77,7 +77,8 @@ bool Integration::take_step(double& t) {
   }
   const bool damps = settings_.method != diagram::IntegrationMethod::adams;
   parts_.switching.take_step(damps ? solver_->statistics().last_step : 0);
-  const std::vector<double>& sample_times = parts_.sources.sample_times(from, t, *solver_, parts_.switching.slides());
+  const std::vector<double>& sample_times =
+      parts_.sources.sample_times(from, t, *solver_, parts_.switching.slides());
   // The states are still those of `from`.
   if (short_steps_.take_back(from, parts_.states, sample_times, parts_.segments.end())) {
     t = from;
