@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <oblique/network/assembly/network.h>
@@ -15,7 +15,10 @@ namespace oblique::network {
 struct Mask {
   std::uint32_t discrete_state = 0;
   double value = 0;
-  auto operator<=>(const Mask&) const = default;
+
+  bool operator<(const Mask& other) const {
+    return std::pair(discrete_state, value) < std::pair(other.discrete_state, other.value);
+  }
 };
 
 /// Of the position of each switch what masks it: as long as any of its masks has its value, nothing that the
