@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <thread>
 #include <tuple>
 
@@ -271,6 +272,36 @@ y = "C.y"
   // Newton's method ends at rounding, magnified by 1/(sin γ) at most.
   EXPECT_NEAR(result.trajectory.at(0, 1), 0.1 + 0.5 * (c * cosine + s * sine), 1e-13);
   EXPECT_NEAR(result.trajectory.at(0, 2), 0.2 + 0.5 * (s * cosine - c * sine), 1e-13);
+}
+
+// The coupler by its mark and its two joints, in whatever order they are given: the gradient servos of the
+// joints err alike, to the tolerance of the run.
+TEST(Compare, DoesNotDependOnWhichPointsGiveALink) {
+  const auto error_of = [](const std::string& coupler) {
+    CompareOptions options;
+    options.methods = {patch::PatchMethod::gradient};
+    options.gains = {1e3};
+    return compare(mechanism::parse_mechanism("format = \"oblique-mechanism/1\"\n"
+                                              "[frame]\nA = [0, 0]\nD = [4, 0]\n[bodies]\n"
+                                              "AB = { points = [\"A\", \"B\"], length = 1 }\n" +
+                                                  coupler +
+                                                  "\nCD = { points = [\"C\", \"D\"], length = 3 }\n[drives]\n"
+                                                  "crank = { turns = \"AB\", about = \"A\", speed = 1 }\n"
+                                                  "[sketch]\nC = [3.5, 2.9]\n",
+                                              "m.toml"),
+                   diagram::BlockLibrary::shipped(), options)
+        .runs.front()
+        .max_error;
+  };
+  // M lies halfway along B → C and 1 to its left; from M to B along −(1.75, 1)/|MB|, C lies 2.0625/|MB|
+  // behind and 3.5/|MB| to the left.
+  const double error = error_of("BCM = { points = [\"B\", \"C\"], length = 3.5, marks = { M = [1.75, 1] } }");
+  const double side = std::hypot(1.75, 1);
+  std::ostringstream coupler;
+  coupler.precision(17);
+  coupler << R"(MBC = { points = ["M", "B"], length = )" << side << ", marks = { C = [" << -2.0625 / side
+          << ", " << 3.5 / side << "] } }";
+  EXPECT_NEAR(error_of(coupler.str()), error, 1e-3 * error);
 }
 
 }  // namespace

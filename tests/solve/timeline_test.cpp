@@ -391,6 +391,10 @@ TEST(Run, FindsExtremesBetweenItsRows) {
   EXPECT_NEAR(result.extremes[0].maximum.value, 1, 1e-7);  // the solver's tolerance
   EXPECT_NEAR(result.extremes[0].maximum.time, std::atan2(0.8, 0.6), 1e-3);
   EXPECT_NEAR(result.extremes[1].minimum.value, -1, 1e-7);
+  options.tolerance = 1e-12;  // of which some hundred steps leave less than 1e-10
+  const auto finer = run(made.program, made.flat, options);
+  EXPECT_NEAR(finer.extremes[0].maximum.value, 1, 1e-10);
+  EXPECT_NEAR(finer.extremes[1].minimum.value, -1, 1e-10);
 }
 
 }  // namespace
