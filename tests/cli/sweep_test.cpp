@@ -124,7 +124,7 @@ TEST_F(Sweep, KeepsWhatIsDoneWhereCtrlCEndsIt) {
   for (const std::string seconds :
        {"1", "3", "9"}) {  // a busy computer may have done nothing after the first
     const Outcome outcome =
-        run_command("timeout --preserve-status -s INT " + seconds + " oblique sweep " + decay_ +
+        run_command("timeout --foreground --preserve-status -s INT " + seconds + " oblique sweep " + decay_ +
                         " --vary x.initial=0..1:1000000 --jobs 2 --measure 'start(x)' -o " + file("t.csv"),
                     OBLIQUE_SOURCE_DIR);
     EXPECT_THAT(outcome.err, HasSubstr("interrupted: "));
