@@ -155,7 +155,7 @@ TEST(Interval, ContainsNoiseThatItSamples) {
 }
 
 // Enclosures that are no wider than they need be: 1 … 4 to the power of ½, and of −½ … ½.
-TEST(Interval, APowerOfPositiveNumbersIsThatOfTheCorners) {
+TEST(Interval, APowerIsThatOfTheCornersAndOfZero) {
   ExpressionGraph graph;
   const NodeId power = graph.apply(Op::power, graph.variable(0), graph.variable(1));
   const auto of = [&](Interval x, Interval y) { return range_of(graph, power, std::array{x, y}); };
@@ -165,6 +165,10 @@ TEST(Interval, APowerOfPositiveNumbersIsThatOfTheCorners) {
   EXPECT_DOUBLE_EQ(both.low, 0.5);
   EXPECT_DOUBLE_EQ(both.high, 2);
   EXPECT_EQ(of({-1, 4}, {0.5, 0.5}).high, std::numeric_limits<double>::infinity());
+  const Interval square = of({-2, 3}, {2, 2});  // over zero a whole power has its least there, or a pole
+  EXPECT_EQ(square.low, 0);
+  EXPECT_DOUBLE_EQ(square.high, 9);
+  EXPECT_EQ(of({-2, 3}, {-2, -2}).high, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
