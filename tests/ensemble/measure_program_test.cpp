@@ -170,8 +170,8 @@ TEST(Measure, IsRefusedAtItsPlace) {
   EXPECT_THROW(MeasureProgram("end(exact(B.x))", false, column_of), text::ExpressionError);
 }
 
-// Rows of a straight line with a tip: the parabola through its three rows stands 1/8 above them at the most,
-// of a whole of 1 + 0 + 1 + 0: two thirds of that of the three places beside it where the line is not smooth.
+// Rows 1, 0, 1, 0: beside each of the two inner ones a line misses at the most |1 − 2·0 + 1|/8 of the
+// parabola through three, two thirds of that in the mean, and of a sum of 2.
 TEST(Measure, TellsWhatTheRowsMayMissOfAnIntegral) {
   const auto run = sampled(
       3, 4, [](double t) { return std::fmod(t + 1, 2); }, [](double) { return 0.0; });

@@ -226,7 +226,7 @@ k = { type = "limiter", in = "x", low = 0, high = "inf" }
   EXPECT_EQ(counted.verdict(), ComponentList::Verdict::cannot_tell);
 }
 
-// What a shipped block without a role requires of a kind that has blocks of its own is counted with them.
+// What a block without a role requires of a kind that has blocks of its own is counted with them.
 TEST(ComponentList, CountsWhatIsRequiredWithTheElementsOfItsKind) {
   const diagram::BlockLibrary library =
       testing::shipped_blocks_and("own",

@@ -75,7 +75,9 @@ c = { type = "comparator", in = ["x", "-q", "-level"] }
 }
 
 // A dip of some 2e-5 s is masked until the state passes a half, a fiftieth of a second before: the same step
-// leads over both, and nothing but a count follows from them.
+// leads over both, and nothing but a count follows from them. The search for events may find it by itself:
+// that nothing is lost on the way is seen here, that the step is looked at anew in
+// ThatAreMaskedAreNotLookedAt.
 TEST(BentComparisons, WhatAnotherUnmasksWithinAStepIsFound) {
   const diagram::BlockLibrary library = testing::shipped_blocks_and("own", R"toml(
 [inputs]
