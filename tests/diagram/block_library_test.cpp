@@ -2,7 +2,12 @@
 #include <oblique/diagram/block_library.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <future>
+#include <map>
+#include <regex>
+#include <span>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -76,6 +81,33 @@ TEST(BlockLibrary, ShipsBlocksThatFlatten) {
     }
     EXPECT_EQ(message_of([&] { flatten(diagram, library); }), "") << name;
   }
+}
+
+/// Against the texts of the files, where a role stands in a line of its own.
+TEST(BlockLibrary, FindsTheBlockOfARole) {
+  const BlockLibrary library = BlockLibrary::shipped();
+  std::map<std::string, std::string> names;  // of the blocks, by their roles
+  for (const std::string& name : library.names()) {
+    std::smatch found;
+    const std::string text = text::read_file(kBlocks / (name + ".toml"));
+    if (std::regex_search(text, found, std::regex("\nrole *= \"([a-z-]+)\"\n"))) names[found[1]] = name;
+  }
+  EXPECT_EQ(names.size(), 11U);
+  for (int role = static_cast<int>(Role::reference); role <= static_cast<int>(Role::function_generator);
+       ++role) {
+    const BlockDefinition* const block = BlockLibrary::shipped().find(static_cast<Role>(role));
+    ASSERT_NE(block, nullptr) << role;
+    EXPECT_EQ(block->name, names[std::string(role_name(static_cast<Role>(role)))]);
+  }
+}
+
+TEST(BlockLibrary, ParsesAShippedFileOnceForAllWhoAskAtOnce) {
+  std::array<std::future<const BlockDefinition*>, 4> found;
+  for (auto& one : found)
+    one = std::async(std::launch::async, [] { return BlockLibrary::shipped().find("dyad-rrr"); });
+  const BlockDefinition* const first = found[0].get();
+  EXPECT_EQ(first->name, "dyad-rrr");
+  for (auto& one : std::span(found).subspan(1)) EXPECT_EQ(one.get(), first);
 }
 
 TEST(BlockLibrary, ReadsADirectoryAndReplacesBlocks) {

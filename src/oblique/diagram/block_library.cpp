@@ -2,6 +2,8 @@
 #include <oblique/diagram/block_library.h>
 
 #include <algorithm>
+#include <mutex>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -28,13 +30,42 @@ text::Diagnostic bad_file_name(const std::filesystem::path& file, const std::str
 
 }  // namespace
 
+/// A block, or the shipped file that it is parsed from: a run asks for a few of them, and all together take
+/// longer than many a run.
+class BlockLibrary::Entry {
+ public:
+  explicit Entry(BlockDefinition definition) : parsed_(std::move(definition)) {}
+  explicit Entry(const ShippedFile& file) : file_(file) {}
+
+  /// Several threads may ask at once.
+  const BlockDefinition& definition() const {
+    std::call_once(once_, [this] {
+      if (!parsed_)
+        parsed_ = parse_block(file_.text, fmt::format("blocks/{}.toml", file_.name), std::string(file_.name));
+    });
+    return *parsed_;
+  }
+
+  bool has(Role role) const {
+    const bool is_named = file_.text.empty() || file_.text.find(role_name(role)) != std::string_view::npos;
+    return is_named && definition().role == role;
+  }
+
+ private:
+  ShippedFile file_{};
+  mutable std::once_flag once_;
+  mutable std::optional<BlockDefinition> parsed_;
+};
+
 BlockLibrary BlockLibrary::shipped() {
-  // Parsed once: the machines are read against it too.
+  // Made once: the machines are read against it too.
   static const BlockLibrary library = [] {
-    BlockLibrary parsed;
-    for (const ShippedFile& block : shipped_blocks())
-      parsed.add(parse_block(block.text, fmt::format("blocks/{}.toml", block.name), std::string(block.name)));
-    return parsed;
+    BlockLibrary made;
+    for (const ShippedFile& block : shipped_blocks()) {
+      made.order_.emplace_back(block.name);
+      made.entries_.emplace(block.name, std::make_shared<const Entry>(block));
+    }
+    return made;
   }();
   return library;
 }
@@ -72,26 +103,27 @@ void BlockLibrary::add_directory(const std::filesystem::path& directory) {
 
 void BlockLibrary::add(BlockDefinition definition) {
   std::string name = definition.name;
-  const auto [at, is_new] = definitions_.insert_or_assign(std::move(name), std::move(definition));
+  const auto [at, is_new] =
+      entries_.insert_or_assign(std::move(name), std::make_shared<const Entry>(std::move(definition)));
   if (is_new) order_.push_back(at->first);
 }
 
 const BlockDefinition* BlockLibrary::find(std::string_view name) const {
-  const auto found = definitions_.find(name);
-  return found == definitions_.end() ? nullptr : &found->second;
+  const auto found = entries_.find(name);
+  return found == entries_.end() ? nullptr : &found->second->definition();
 }
 
 const BlockDefinition* BlockLibrary::find(Role role) const {
   for (const std::string& name : order_) {
-    const BlockDefinition& definition = definitions_.find(name)->second;
-    if (definition.role == role) return &definition;
+    const Entry& entry = *entries_.find(name)->second;
+    if (entry.has(role)) return &entry.definition();
   }
   return nullptr;
 }
 
 std::vector<std::string> BlockLibrary::names() const {
   std::vector<std::string> names;
-  for (const auto& [name, definition] : definitions_) names.push_back(name);
+  for (const auto& [name, entry] : entries_) names.push_back(name);
   return names;
 }
 

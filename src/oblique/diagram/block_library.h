@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,10 +12,11 @@
 
 namespace oblique::diagram {
 
-/// The kinds of blocks a diagram may use, by name.
+/// The kinds of blocks a diagram may use, by name. Copies share the blocks, which stay where they are as long
+/// as one of the copies has them.
 class BlockLibrary {
  public:
-  /// The shipped library, embedded in the program.
+  /// The shipped library, embedded in the program; each of its files is parsed when it is first asked for.
   static BlockLibrary shipped();
 
   /// Adds every `*.toml` of a directory; a name that is there already is replaced.
@@ -33,7 +35,9 @@ class BlockLibrary {
   std::vector<std::string> names() const;
 
  private:
-  std::map<std::string, BlockDefinition, std::less<>> definitions_;
+  class Entry;
+
+  std::map<std::string, std::shared_ptr<const Entry>, std::less<>> entries_;
   std::vector<std::string> order_;  ///< the names, as they were first added
 };
 
