@@ -50,9 +50,10 @@ const packed = (content) => gzipSync(content, {level: 9}).toString("base64");
 const worker = bundle("worker.ts", "--format=iife", `--alias:engine=${join(built, "engine.mjs")}`, `--alias:engine-glue=${join(built, "engine.js")}`,
   "--external:fs", "--external:path", "--external:crypto");
 const script = inside(bundle("main.tsx", "--format=iife", "--jsx=automatic", "--jsx-import-source=preact"));
+const early = inside(bundle("early.ts", "--format=iife"));
 const style = bundle("page.css");
 const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
-const policy = `default-src 'none'; script-src ${hash(script)} 'wasm-unsafe-eval' blob:; worker-src blob:; style-src 'unsafe-inline'; img-src data: blob:; ` +
+const policy = `default-src 'none'; script-src ${hash(early)} ${hash(script)} 'wasm-unsafe-eval' blob:; worker-src blob:; style-src 'unsafe-inline'; img-src data: blob:; ` +
   "connect-src 'none'; form-action 'none'; base-uri 'none'";
 
 const parts = {
@@ -62,6 +63,7 @@ const parts = {
   EXAMPLES: packed(JSON.stringify(examples)),
   ENGINE: packed(readFileSync(join(built, "engine.wasm"))),
   WORKER: inside(worker),
+  EARLY: early,
   SCRIPT: script,
 };
 const page = readFileSync(join(here, "index.html"), "utf8").replace(/@([A-Z]+)@/g, (_, part) => parts[part]);

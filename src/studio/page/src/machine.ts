@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The worker with the engine, as functions that promise an answer.
 import type {Answer, Reply} from "./answers";
+import {carried, newWorker} from "./carried";
 
 const piece = 1 << 17;  // characters of base64 that are unpacked in one go: whole groups of four
 
@@ -18,11 +19,6 @@ export function unpacked(base64: string, type: string): Response {
   return new Response(zipped.pipeThrough(new DecompressionStream("gzip")), {headers: {"Content-Type": type}});
 }
 
-/// What a page carries in an element that is no script of it.
-export function carried(id: string): string {
-  return document.getElementById(id)?.textContent ?? "";
-}
-
 // Rejects, too, where the browser has not what it needs.
 async function compiled(): Promise<WebAssembly.Module> {
   return WebAssembly.compileStreaming(unpacked(carried("engine"), "application/wasm"));
@@ -32,7 +28,6 @@ export class Stopped extends Error {}
 
 // Of all machines: compiled once, while it is unpacked.
 let engine: Promise<WebAssembly.Module> | undefined;
-let script: string | undefined;
 
 export class Machine {
   private worker: Worker | undefined;
@@ -45,8 +40,8 @@ export class Machine {
   start(): Promise<void> {
     ++this.starts;
     engine ??= compiled();
-    const from = script ??= URL.createObjectURL(new Blob([carried("worker")], {type: "text/javascript"}));
-    const worker = this.worker = new Worker(from);  // it reads its script meanwhile
+    const worker = this.worker = globalThis.earlyWorker ?? newWorker();  // it reads its script meanwhile
+    globalThis.earlyWorker = undefined;
     this.ready = new Promise((done, failed) => {
       worker.onerror = (event) => failed(new Error(event.message));
       worker.onmessage = (event: MessageEvent<Reply | "ready" | "failed">) => {

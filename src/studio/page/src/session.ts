@@ -4,7 +4,8 @@
 import {useEffect, useReducer} from "preact/hooks";
 
 import type {Advanced, Answer, Checked, Diagnostic, Drawn, Exchanged, Held, Lesson, Opened, Overloads, Patched, Read, Saved} from "./answers";
-import {carried, Machine, Stopped, unpacked} from "./machine";
+import {carried} from "./carried";
+import {Machine, Stopped, unpacked} from "./machine";
 import {short} from "./numbers";
 import {Instrument} from "./scope/instrument";
 import {atFirst, type ScopeSettings} from "./scope/settings";
