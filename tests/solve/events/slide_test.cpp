@@ -277,6 +277,26 @@ x = { type = "integrator", in = ["0.5*one", "-f"], initial = -1 })",
   EXPECT_THAT(message, HasSubstr("'f' switches without end at t = 2"));
 }
 
+// x′ = −4 x − 8 c, where c is 0.4375 above zero and −0.2625 below it, and so is what it compares by the jump
+// of the table: both take 0.375 = 0.2625/(0.4375 + 0.2625) of the time, also where a phase begins anew in the
+// slide.
+TEST(Slides, AJumpThatTakesAComparatorAlongSlidesWithIt) {
+  for (const double tolerance : {1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
+    const Compiled made(
+        "table = { type = \"function-generator\", in = \"x\", points = [[-1, 0], [0, 0], [0, 0.16], [1, "
+        "0.16]] }\n"
+        "c = { type = \"comparator\", in = [\"2*x\", \"table\"], low = -0.2625, high = 0.4375 }\n"
+        "x = { type = \"transfer-lag\", in = \"c\", time_constant = 0.25, gain = -2, initial = 0.7 }\n",
+        "[timeline]\nphases = [{ mode = \"hold\", for = 1.375 }]\ncycles = 2\n");
+    const auto result = run_of(made, {.until = 4, .tolerance = tolerance, .samples = 5});
+    for (const double t : {2.0, 3.0, 4.0}) {
+      EXPECT_NEAR(row_values(result, "table")[static_cast<std::size_t>(t)], 0.06, 1e-7) << tolerance;
+      EXPECT_NEAR(row_values(result, "x")[static_cast<std::size_t>(t)], 0, 1e-7)
+          << tolerance;  // as it drifts
+    }
+  }
+}
+
 TEST(Slides, EventsThatSetEachOtherOffAreEndedByName) {
   const diagram::BlockLibrary library = library_with_bit("in < 0.5", "in > 0.5");
   const std::string message = message_of<SolveError>(

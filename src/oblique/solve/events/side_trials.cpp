@@ -31,6 +31,9 @@ SideTrials::SideTrials(const network::Program& program, network::Workspace& work
 void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x) {
   units_ = std::move(units);
   before_.assign(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  event_functions_before_.resize(event_functions_.size());
+  if (!program_.event_functions(t, x.data(), event_functions_before_.data(), workspace_))
+    event_functions_before_.assign(event_functions_.size(), 0);
   fastest_ = 0;
   trials_.clear();
   for (Combination sides = 0; sides < combinations(); ++sides) trials_.push_back(attempt(sides, bends, t, x));
@@ -89,6 +92,8 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
   }
   for (const auto& [s, position] : bends.positions()) put(s, position);
   auto here = place_others(program_, workspace_, thresholds_, placed, t, x, event_functions_);
+  if (here && lower_what_came_to_zero(placed))
+    here = place_others(program_, workspace_, thresholds_, placed, t, x, event_functions_);
   if (!bends.any()) return here;
   // Within rounding the others may have gone where the bends have no reason to be: they begin anew by these.
   std::vector<double> bent, followed;
@@ -109,6 +114,21 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
     here = place_others(program_, workspace_, thresholds_, placed, t, x, event_functions_);
   }
   return here;
+}
+
+/// What the units' sides have put on zero is not above it, as in a slide; whether any was.
+bool SideTrials::lower_what_came_to_zero(const std::vector<bool>& placed) {
+  bool any = false;
+  for (std::size_t s = 0; s < placed.size(); ++s) {
+    const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+    const bool came =
+        std::abs(event_functions_[s]) <= thresholds_[s] && event_functions_before_[s] > thresholds_[s];
+    if (placed[s] || program_.switches()[s].rate || !came || workspace_.discrete_state(discrete_state) == 0)
+      continue;
+    workspace_.set_discrete_state(discrete_state, 0);
+    any = true;
+  }
+  return any;
 }
 
 std::optional<SideTrials::Trial> SideTrials::attempt(Combination sides, Bends& bends, double t,

@@ -68,6 +68,7 @@ class SideTrials {
     std::vector<ProbedRate> rates;
   };
 
+  bool lower_what_came_to_zero(const std::vector<bool>& placed);
   std::optional<Trial> attempt(Combination sides, Bends& bends, double t, std::span<const double> x);
   void find_scales();
   void find_broken();
@@ -86,7 +87,7 @@ class SideTrials {
   double fastest_ = 0;
   std::vector<RateScale> scales_;  ///< of each unit, in all trials
   RateProbe probe_;
-  std::vector<double> event_functions_;
+  std::vector<double> event_functions_, event_functions_before_;
 };
 
 }  // namespace oblique::solve
