@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/circle.h>
 #include <oblique/solve/events/switching_start.h>
 #include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/solve_error.h>
@@ -64,8 +65,10 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (effect) return true;
     return std::exchange(loops_go, false) && !slide_.active() && loop_jumps_.settle(t, x);
   };
+  Circle circle;
   for (int round = 0;; ++round) {
-    if (round > kMostRounds) throw log_.endless("the start does not settle", t);
+    if (round > kMostRounds || circle.closes(workspace_.discrete_states(), x))
+      throw log_.endless("the start does not settle", t);
     try {
       if (!goes_on()) break;
     } catch (const SolveError& failure) {
