@@ -6,8 +6,6 @@
 namespace oblique::draw {
 namespace {
 
-using Eigen::Vector2d;
-
 constexpr double kRise = 2 * kLayoutGrid;
 
 /// Three boxes in a row; the wire from the second to the third goes up by a step.
