@@ -287,5 +287,11 @@ TEST(Scale, HasRoomForConstantsAndForNothing) {
   EXPECT_FALSE(Scale({"x", "", true}, {0, -1}, true).ticks(5).empty());
 }
 
+// What varies by 5e-9 of its size is no constant: it fills the axis. Rounding is below 1e-9 of it.
+TEST(Scale, ShowsALittleThatIsMoreThanRounding) {
+  EXPECT_NEAR(Scale({"x"}, {1, 1 + 5e-9}, false).fraction(1), 0, 1e-6);
+  EXPECT_NEAR(Scale({"x"}, {1, 1 + 5e-10}, false).fraction(1), 0.5, 1e-6);
+}
+
 }  // namespace
 }  // namespace oblique::draw

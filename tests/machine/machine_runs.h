@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +17,11 @@
 #include "../support/compiled.h"
 
 namespace oblique::testing {
+
+/// A diagram whose file has this text below its first line.
+inline diagram::Diagram parsed(const std::string& text) {
+  return diagram::parse_diagram("format = \"oblique-diagram/1\"\n" + text, "test.toml");
+}
 
 inline solve::Trajectory trajectory_of(const diagram::Diagram& diagram) {
   const diagram::FlatDiagram flat = diagram::flatten(diagram, shipped_blocks());

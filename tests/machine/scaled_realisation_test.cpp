@@ -13,7 +13,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/diagram_writer.h>
 #include <oblique/machine/realise.h>
 #include <oblique/solve/run.h>
@@ -29,12 +28,9 @@ using testing::expect_machine_elements;
 using testing::greatest_signal;
 using ::testing::HasSubstr;
 using testing::inverting_machine;
+using testing::parsed;
 using testing::shipped_blocks;
 using testing::trajectory_of;
-
-diagram::Diagram parsed(const std::string& text) {
-  return diagram::parse_diagram("format = \"oblique-diagram/1\"\n" + text, "test.toml");
-}
 
 // Integrators, open amplifiers and function generators have a range of their own, which they use.
 TEST(ScaledRealisation, UsesNineTenthsOfTheMachineUnit) {
@@ -186,40 +182,6 @@ y = "y"
   EXPECT_LE(off, GetParam().within > 1e-7 ? 0U : 1U) << diagram::write_diagram(made.diagram);
 }
 
-// A machine that has comparators and multipliers, and no function generators, as a Model-1. What these give
-// is continuous: no row is off.
-TEST(ScaledRealisation, MakesCornersOfComparatorsWhereThereIsNoFunctionGenerator) {
-  diagram::MachineProfile machine = desk_machine();
-  std::erase_if(machine.elements, [](const diagram::ElementCount& element) {
-    return element.kind == diagram::ElementKind::function_generator;
-  });
-  for (const std::string block : {R"({ type = "limiter", in = "u", low = -0.4, high = 1.3 })",
-                                  R"({ type = "dead-zone", in = "3*u", low = -0.4, high = 1.3 })",
-                                  R"({ type = "minimum", x = "u", y = "2*v" })",
-                                  R"({ type = "ramp", slope = 3, start = 0.5, stop = 2.5, initial = -2 })"}) {
-    const diagram::Diagram diagram = parsed(fmt::format(R"toml(
-[run]
-until = 5
-[blocks]
-u = {{ type = "integrator", in = ["3*w"], initial = 0.1 }}
-w = {{ type = "integrator", in = ["-3*u"], initial = 2 }}
-one = {{ type = "constant", value = 1 }}
-v = {{ type = "integrator", in = ["0.4*one"], initial = -1 }}
-y = {}
-[outputs]
-y = "y"
-)toml",
-                                                        block));
-    const ScaledRealisation made = realise_scaled(diagram, shipped_blocks(), machine);
-    expect_machine_elements(made.diagram, false);
-    EXPECT_THAT(diagram::write_diagram(made.diagram), ::testing::Not(HasSubstr("function-generator")))
-        << block;
-    EXPECT_TRUE(made.functions.empty()) << block;
-    EXPECT_LE(greatest_signal(made.diagram), 1 + 1e-5) << block;
-    EXPECT_LT(testing::difference(diagram, made.diagram), 1e-6) << block;
-  }
-}
-
 // The small difference of two large signals is not blown up: no input is weighted more than ×10.
 TEST(ScaledRealisation, LeavesASmallDifferenceSmall) {
   const diagram::Diagram diagram = parsed(R"toml(
@@ -240,50 +202,6 @@ twice = { type = "multiplier", in = ["rest", "a"] }
   EXPECT_GE(rest->unit, 0.09);  // 1 machine unit of it; of a its unit is 1, and c goes a little beyond
   EXPECT_LT(rest->largest, 0.1);
   EXPECT_LT(testing::difference(diagram, made.diagram), 1e-7);
-}
-
-TEST(ScaledRealisation, SaysHowFarAFunctionGeneratorIsFromItsFunction) {
-  const ScaledRealisation made = realise_scaled(parsed(R"toml(
-[run]
-until = 1
-[blocks]
-one   = { type = "constant", value = 1 }
-angle = { type = "integrator", in = ["pi/2*one"] }
-y     = { type = "cosine", in = "angle" }
-)toml"),
-                                                shipped_blocks(), desk_machine());
-  ASSERT_EQ(made.functions.size(), 1U);
-  EXPECT_EQ(made.functions[0].signal, "y");
-  EXPECT_EQ(made.functions[0].block, "cosine");
-  EXPECT_EQ(made.functions[0].segments, 10);
-  EXPECT_NEAR(made.functions[0].high, std::numbers::pi / 2, 1e-6);
-  EXPECT_NEAR(made.functions[0].error, 9e-4, 1e-4);  // see LineSegments
-  const solve::Trajectory run = trajectory_of(made.diagram);
-  const auto y = run.find("y");
-  ASSERT_TRUE(y);
-  double off = 0;
-  for (std::size_t r = 0; r < run.rows(); ++r)
-    off = std::max(off, std::abs(run.at(r, *y) - std::cos(std::numbers::pi / 2 * run.at(r, 0) / made.time)));
-  EXPECT_NEAR(off, made.functions[0].error, 2e-5);
-}
-
-// A forcing by points, (0, 0), (1, 3), (3, −1): its integral at 3 is 1.5 + 2. The lines are those of the
-// points, so that what is left is the solver's 1e-8.
-TEST(ScaledRealisation, SetsAFunctionGeneratorByTheLinesOfARecording) {
-  const ScaledRealisation made = realise_scaled(parsed(R"toml(
-[run]
-until = 3
-[blocks]
-u = { type = "recording", data = [[0, 0], [1, 1.5], [3, -0.5]], scale = 2 }
-x = { type = "integrator", in = ["u"] }
-[outputs]
-x = "x"
-)toml"),
-                                                shipped_blocks(), desk_machine());
-  ASSERT_EQ(made.functions.size(), 1U);
-  EXPECT_EQ(made.functions[0].segments, 2);
-  const solve::Trajectory run = trajectory_of(made.diagram);
-  EXPECT_NEAR(run.at(run.rows() - 1, 1), 3.5, 1e-7);
 }
 
 /// 1 machine unit of each integrator, in the units of the problem, by name.
@@ -349,45 +267,24 @@ x = { type = "integrator", in = ["v"], initial = 0.08 }
   EXPECT_NEAR(units.at("v"), 0.4, 1e-12);
 }
 
-/// What is said of a diagram with one block on the way.
-std::string refusal(const std::string& block) {
-  try {
-    realise_scaled(
-        parsed("[blocks]\none = { type = \"constant\" }\nx = { type = \"integrator\", in = [\"one\"] }\n" +
-               block),
-        shipped_blocks(), desk_machine());
-  } catch (const text::Error& error) {
-    return error.what();
-  }
-  return "realised";
-}
-
 TEST(ScaledRealisation, NamesEveryBlockThatTheMachineHasNot) {
   const std::string remedy =
       ", and no circuit of its elements for it; expected amplifiers, potentiometers, multipliers, "
       "comparators, and "
       "functions of one signal\n"
       "  remedy: build it of these";
-  EXPECT_EQ(refusal("a = { type = \"backlash\", in = \"x\" }\nb = { type = \"backlash\", in = \"x\" }\n"
-                    "n = { type = \"counter\", clock = \"x\" }\n"),
+  EXPECT_EQ(testing::message_of<RealiseError>([] {
+              realise_scaled(parsed(R"toml([blocks]
+one = { type = "constant" }
+x = { type = "integrator", in = ["one"] }
+a = { type = "backlash", in = "x" }
+b = { type = "backlash", in = "x" }
+n = { type = "counter", clock = "x" }
+)toml"),
+                             shipped_blocks(), desk_machine());
+            }),
             "test.toml:5:1: the machine Machine has no backlash, which 'a', 'b' are" + remedy +
                 "\ntest.toml:7:1: the machine Machine has no counter, which 'n' is" + remedy);
-}
-
-// Noise is a function of time, and no ten lines are noise.
-TEST(ScaledRealisation, RefusesAFunctionThatItsLinesMiss) {
-  EXPECT_THAT(refusal("n = { type = \"noise-source\", bandwidth = \"100 Hz\" }\n"),
-              ::testing::ContainsRegex(
-                  "test.toml:5:1: 10 straight lines miss 'n' \\(noise-source\\) by [0-9.]+, which "
-                  "itself goes from -[0-9.]+ to [0-9.]+; expected a function that a function "
-                  "generator can be set for"));
-}
-
-TEST(ScaledRealisation, RefusesAFunctionThatHasNoLines) {
-  EXPECT_THAT(
-      refusal("a = { type = \"time-function\", formula = \"step(time - 0.4)\" }\n"),
-      HasSubstr("test.toml:5:1: 'a' (time-function) jumps, or is not finite, where its argument runs from 0 "
-                "to 1; expected a continuous function, which a function generator can be set for"));
 }
 
 // A circular orbit, r″ = 1/r³ − 1/r² from r = 1: what is left of r′ is what the amplifier of the divider does
@@ -407,26 +304,6 @@ r   = { type = "integrator", in = "v", initial = 1 }
                                                 shipped_blocks(), desk_machine());
   EXPECT_LE(made.time, 1);
   for (const SignalScale& scale : made.scales) EXPECT_GT(scale.unit, 0.1) << scale.signal;
-}
-
-// A function of one signal becomes a function generator; of two it has no lines to be set by.
-TEST(ScaledRealisation, TabulatesFunctionsOfOneSignalAlone) {
-  diagram::BlockLibrary library = shipped_blocks();
-  const auto add = [&](const std::string& name, const std::string& inputs, const std::string& out) {
-    library.add(diagram::parse_block("format = \"oblique-block/1\"\ntitle = \"t\"\n[inputs]\n" + inputs +
-                                         "[outputs]\nout = {}\n[equations]\nout = \"" + out + "\"\n",
-                                     name + ".toml", name));
-  };
-  add("one", "a = {}\n", "exp(a)");
-  add("two", "a = {}\nb = {}\n", "exp(a*b)");
-  const std::string x = "[blocks]\nx = { type = \"integrator\", in = \"-p\", initial = 0.5 }\n";
-  const std::string one = "p = { type = \"one\", a = \"x\" }\n",
-                    two = "p = { type = \"two\", a = \"x\", b = \"x\" }\n";
-  EXPECT_THAT(diagram::write_diagram(realise_scaled(parsed(x + one), library, desk_machine()).diagram),
-              HasSubstr("function-generator"));
-  EXPECT_THAT(
-      testing::message_of<RealiseError>([&] { realise_scaled(parsed(x + two), library, desk_machine()); }),
-      HasSubstr("'p'"));
 }
 
 }  // namespace

@@ -163,24 +163,28 @@ TEST(Triad, HangsOnARevoluteAndAPrismaticJoint) {
                {{{0, 0}, 0.5, std::sqrt(3) / 2}, {{0, 0}, 0.5, -std::sqrt(3) / 2}});
 }
 
+// Turned by π exactly, where tan(θ/2) has its pole; lines and rods, in any unit of length.
 TEST(Triad, KnowsHalfATurn) {
-  // Turned by π exactly, where tan(θ/2) has its pole.
-  const PlatformPose half_turn{{1, 2}, -1, 0};
-  const std::array<Vector2d, 3> locals = {Vector2d(0, 0), Vector2d(2, 0.5), Vector2d(0.5, 1.5)};
-  const std::array<Vector2d, 3> anchors = {Vector2d(4, 0), Vector2d(-3, -1), Vector2d(0, 5)};
-  for (int kinds = 0; kinds < 27; ++kinds) {
-    std::array<Leg, 3> legs;
-    int rest = kinds;
-    for (std::size_t i = 0; i < 3; ++i, rest /= 3) {
-      const Vector2d arm = world(half_turn, locals[i]) - anchors[i];
-      if (rest % 3 == 0) legs[i] = circle(locals[i], anchors[i], arm.norm());
-      if (rest % 3 == 1) legs[i] = {Leg::Kind::fixed_line, locals[i], anchors[i], arm.normalized(), 0};
-      if (rest % 3 == 2) legs[i] = {Leg::Kind::platform_line, locals[i], anchors[i], arm.normalized(), 0};
+  for (const double unit : {1.0, 1e-6}) {
+    const PlatformPose half_turn{unit * Vector2d(1, 2), -1, 0};
+    const std::array<Vector2d, 3> locals = {Vector2d(0, 0), unit * Vector2d(2, 0.5),
+                                            unit * Vector2d(0.5, 1.5)};
+    const std::array<Vector2d, 3> anchors = {unit * Vector2d(4, 0), unit * Vector2d(-3, -1),
+                                             unit * Vector2d(0, 5)};
+    for (int kinds = 0; kinds < 27; ++kinds) {
+      std::array<Leg, 3> legs;
+      int rest = kinds;
+      for (std::size_t i = 0; i < 3; ++i, rest /= 3) {
+        const Vector2d arm = world(half_turn, locals[i]) - anchors[i];
+        if (rest % 3 == 0) legs[i] = circle(locals[i], anchors[i], arm.norm());
+        if (rest % 3 == 1) legs[i] = {Leg::Kind::fixed_line, locals[i], anchors[i], arm.normalized(), 0};
+        if (rest % 3 == 2) legs[i] = {Leg::Kind::platform_line, locals[i], anchors[i], arm.normalized(), 0};
+      }
+      const PlatformModes modes = platform_modes(legs);
+      EXPECT_FALSE(modes.movable) << kinds << " in " << unit;
+      EXPECT_LT(distance_to(modes, half_turn), 1e-13) << kinds << " in " << unit;
+      expect_closed(legs, modes, 1e-13 * unit);
     }
-    const PlatformModes modes = platform_modes(legs);
-    EXPECT_FALSE(modes.movable) << kinds;
-    EXPECT_LT(distance_to(modes, half_turn), 1e-13) << kinds;
-    expect_closed(legs, modes, 1e-13);
   }
 }
 

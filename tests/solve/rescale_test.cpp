@@ -131,6 +131,23 @@ v     = { type = "vector-direction", x = "2*m", y = "p" }
   EXPECT_THAT(result.text, HasSubstr("reference"));  // the default speed of the crank
 }
 
+// The speed of a crank that is open is 1: of the user's blocks that come first in the alphabet the one cannot
+// give that, and the other only in a case that is not the usual one.
+TEST(Rescale, TakesForReferenceWhatGivesOneMachineUnit) {
+  for (const std::string block :
+       {"[parameters]\nlevel = { default = 2, at_least = 1.5 }\n[equations]\nout = \"level\"\n",
+        "[parameters]\nlevel = { default = 0 }\n[[cases]]\nwhen = \"level > 5\"\n"
+        "equations = { out = \"level\" }\n[equations]\nout = \"0*level\"\n"}) {
+    const diagram::BlockLibrary library =
+        testing::shipped_blocks_and("a-level", "[outputs]\nout = {}\n" + block);
+    const Compiled made(
+        "k = { type = \"crank-generator\" }\nx = { type = \"integrator\", in = [\"k.cos\"] }\n", "", library);
+    const Rescaled result = rescaled(made, 3, library);
+    EXPECT_LT(result.difference, 1e-7) << block;
+    EXPECT_THAT(result.text, ::testing::Not(HasSubstr("a-level"))) << block;
+  }
+}
+
 // What the file leaves open, the machine decides anew: the sum that feeds a multiplier and `exact` must not
 // become real.
 TEST(Rescale, AmplifiersOfAMachineStayAsTheyAre) {

@@ -146,7 +146,7 @@ void fit_room(machine::MachineScaling& scaling, DiagramOnMachine& result) {
       if (!best) throw;
       break;
     }
-    const bool no_more = excess == 0 || (round > 0 && excess == before);
+    const bool no_more = excess == 0 || excess == before;
     if (!best || excess < least) {
       best = std::move(result.made);
       least = excess;

@@ -198,8 +198,7 @@ class Writer {
     if (!reference_.empty()) return reference_;
     for (const std::string& name : library_.names()) {
       const BlockDefinition& d = *library_.find(name);
-      if (d.is_composite() || !d.inputs.empty() || d.outputs.size() != 1 || d.behaviours.size() != 1)
-        continue;
+      if (!d.inputs.empty() || d.outputs.size() != 1 || d.behaviours.size() != 1) continue;
       const auto& equations = d.behaviours[0].equations;
       if (equations.size() != 1 || equations[0].kind != Equation::Kind::assignment) continue;
       if (equations[0].expression.kind != text::Expression::Kind::name) continue;

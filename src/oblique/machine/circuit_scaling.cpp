@@ -38,7 +38,6 @@ double rate_of(const CircuitElement& element) {
 
 /// Whether an input is compared with a level that no factor moves.
 bool has_fixed_level(const CircuitElement& element, std::size_t port) {
-  if (element.role == Role::other) return true;
   return element.role == Role::integrator && !element.definition->inputs[port].sum &&
          element.definition->inputs[port].name != "start";
 }
@@ -276,9 +275,9 @@ class Scaler {
             : &flat_.blocks[static_cast<std::size_t>(element.block - flat_.blocks.data())];
     std::vector<double> inputs(element.inputs.size(), scaling_.residuals[e]);
     if (element.role == Role::comparator || element.role == Role::function_generator ||
-        element.role == Role::multiplier || element.role == Role::other) {
+        element.role == Role::multiplier) {
       for (std::size_t port = 0; port < inputs.size(); ++port)
-        inputs[port] = element.role == Role::other ? 1 : unit_weight(element.inputs[port]);
+        inputs[port] = unit_weight(element.inputs[port]);
     }
     for (std::size_t port = 0; port < inputs.size(); ++port) {
       const double factor = has_fixed_level(element, port) ? 1 : inputs[port];
@@ -292,7 +291,7 @@ class Scaler {
       scale_open_amplifier(*block, scaling_.residuals[e], out);
     } else {
       for (std::size_t k = 0; k < block->parameters.size(); ++k) {
-        if (element.role == Role::function_generator && block->definition->parameters[k].points)
+        if (block->definition->parameters[k].points)
           scale_points(block->points[k], inputs.empty() ? 1 : inputs.front(), out);
         scale_parameter(*block, k, out);
       }

@@ -167,8 +167,8 @@ double DriveClock::way(std::size_t d, double t) {
   const Drive& drive = mechanism_.drives[d];
   if (!drive.law) return drive.speed * t;
   std::vector<double>& kept = t < 0 ? backward_[d] : forward_[d];
-  const double panel = t < 0 ? -panel_ : panel_;
-  const auto whole = static_cast<std::size_t>(t / panel);
+  const double panel = t < 0 ? -1 : 1;  // width of the intervals that are kept [s]
+  const auto whole = static_cast<std::size_t>(std::abs(t));
   Pieces& last = last_[d];
   const auto enter = [&](std::size_t k) {
     if (last.panel == panel * static_cast<double>(k) && !last.all.empty() && last.step == panel) return;

@@ -64,8 +64,7 @@ class DriveClock {
   };
 
   const Mechanism& mechanism_;
-  double panel_ = 1;                          ///< width of the intervals that are kept [s]
-  std::vector<std::vector<double>> forward_;  ///< for each drive its way up to k·panel_
+  std::vector<std::vector<double>> forward_;  ///< for each drive its way up to k seconds
   std::vector<std::vector<double>> backward_;
   std::vector<Pieces> last_;  ///< for each drive, of the panel that was asked for last
 };

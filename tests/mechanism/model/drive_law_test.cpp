@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/mechanism/model/drive_law.h>
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <oblique/text/expression_parser.h>
+
+namespace oblique::mechanism {
+namespace {
+
+// A speed w/(w² + (t − c)²) gives the way atan((t − c)/w) + atan(c/w). Its peak of w = 0.5 ms needs intervals
+// of about that width, whichever end of a second it stands at, or within it.
+TEST(DriveClock, FollowsAPeakWhereverItStands) {
+  constexpr double kWidth = 5e-4;
+  for (const double centre : {-1.0, -0.7, 0.0, 0.3, 1.0, 1.6}) {
+    Mechanism mechanism;
+    Drive drive;
+    drive.law = text::parse_expression(fmt::format("{0}/({0}^2 + (time - ({1}))^2)", kWidth, centre));
+    drive.start = 2;
+    drive.law_scale = 3;
+    mechanism.drives.push_back(drive);
+    DriveClock clock(mechanism);
+    for (const double t : {2.0, -2.0, 0.4, -0.4, 1.0, -1.0, 1.7}) {
+      const double way = 3 * (std::atan((t - centre) / kWidth) + std::atan(centre / kWidth));
+      // a ten-millionth of the way is a thousand times the 1e-9 that the rules are to agree to
+      EXPECT_NEAR(clock.at(0, t).value, 2 + way, 1e-7) << centre << " at " << t;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace oblique::mechanism
