@@ -27,7 +27,6 @@ void add_tangent_of_unknown(Network& network, std::size_t u, Tangents& tangents)
   Unknown moved;
   moved.name = "a tangent of " + network.unknowns[u].name;
   moved.residual = tangents.of(network.unknowns[u].residual);
-  moved.torn = network.unknowns[u].torn;
   moved.place = network.unknowns[u].place;
   network.unknowns.push_back(std::move(moved));
 }
