@@ -123,6 +123,28 @@ TEST(Branch, EndsInsideTheSolversStepToo) {
   EXPECT_NEAR(row_values(result, "z").back(), exact, 1e-6);  // a hundred times the tolerance
 }
 
+// A comparator turns over just before the branch ends, in the last step that the solver tries there: x, on
+// which neither of them acts, goes on as it went. Late in a run the time shows 1e-10 s, and the end of a
+// branch is found to 1e-4 s.
+TEST(Branch, EndsBehindASwitchOfTheSameStep) {
+  using diagram::IntegrationMethod;
+  for (const double before : {1.6e-11, 2e-11, 2.5e-11}) {
+    const Compiled made(cubic(R"(u = { type = "step", at = 1e6, from = 0, to = 1 }
+x = { type = "integrator", in = "u", initial = -0.6 }
+)",
+                              kIdeal) +
+                        fmt::format(R"(z = {{ type = "transfer-lag", in = "y", initial = -1.2 }}
+level = {{ type = "constant", value = {:.17g} }}
+c = {{ type = "comparator", in = ["x", "-level"] }}
+)",
+                                    kFold - before));
+    for (const auto method : {IntegrationMethod::adams, IntegrationMethod::bdf, IntegrationMethod::rodas}) {
+      const auto result = run_of(made, {.until = 1e6 + 2, .samples = 11, .method = method});
+      EXPECT_NEAR(row_values(result, "x").back(), 1.4, 1e-9) << before;
+    }
+  }
+}
+
 // Jumps there and back, seven in twenty seconds, and the loop closes through no state: only the rows see it.
 TEST(Branch, OfAHysteresisIsHeldBetweenTheJumps) {
   const auto result = run_of(Compiled(cubic("x = { type = \"time-function\", formula = \"0.6*sin(time)\" }\n",
