@@ -352,6 +352,27 @@ TEST(LaneRunner, WhatGrowsFromBelowTheToleranceIsLeftToCvodes) {
     EXPECT_NEAR(rows[21], 1, 1e-4) << k;  // four digits are what lanes know at least
 }
 
+// x = cos t + sin t, and v, which has the size that its machine gives it. In the order of pivots of the
+// typical machine, of size 1, a rate of v is divided by one of x.
+TEST(LaneRunner, AMachineThatItsOrderOfPivotsDoesNotSuitIsLeftToCvodes) {
+  Machines circles(R"(
+      x = { type = "integrator", in = ["1*v"], initial = 1 }
+      v = { type = "integrator", in = ["-1*x"], initial = 1 })",
+                   {"x.in[1]", "v.in[1]", "v.initial"});
+  circles.options.run.method = diagram::IntegrationMethod::rodas;
+  const auto all = circles.run(8, [](std::uint64_t k, std::span<double> values) {
+    const double size = k == 3 ? 1e10 : 1;
+    values[0] = 1 / size;
+    values[1] = -size;
+    values[2] = size;
+  });
+  EXPECT_EQ(circles.count.in_lanes, 7U);
+  EXPECT_EQ(circles.count.reasons,
+            (std::map<std::string, std::uint64_t>{{"the order of pivots does not suit", 1}}));
+  for (const auto& [k, rows] : all)
+    EXPECT_NEAR(rows[21], std::cos(1) + std::sin(1), 2e-6) << k;  // the tolerance, of a size of √2
+}
+
 // Of the servo y² = x with x below zero there is no rest near that of the typical machine.
 TEST(LaneRunner, AMachineWithoutRestIsLeftToCvodes) {
   Machines roots(R"(

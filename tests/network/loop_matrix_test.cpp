@@ -84,6 +84,34 @@ TEST(LoopMatrix, OfALongLoopSolvesWhatIsKnown) {
   }
 }
 
+// Each of its rows reads all unknowns: its factors are dense.
+TEST(LoopMatrix, OfALongLoopOfWhichAllReadsAllSolvesWhatIsKnown) {
+  constexpr std::size_t kDense = 120;
+  LoopCode code;
+  std::vector<double> slots;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> derivative(-1, 1);
+  Eigen::MatrixXd matrix(kDense, kDense);
+  for (std::uint32_t i = 0; i < kDense; ++i) {
+    for (std::uint32_t j = 0; j < kDense; ++j) {
+      code.jacobian.push_back({i, j, static_cast<std::uint32_t>(slots.size())});
+      slots.push_back(matrix(i, j) = derivative(random) + (i == j ? 2.0 * kDense : 0));
+    }
+  }
+  code.unknown_slots.resize(kDense);
+  code.residual_slots.resize(kDense);
+  code.natural_scale.assign(kDense, 0);
+  code.held_by_amplifier.assign(kDense, false);
+  const Eigen::VectorXd known = Eigen::VectorXd::LinSpaced(kDense, -1, 1);
+  Eigen::MatrixXd sides = matrix * known;
+  LoopMatrix factors(kDense);
+  ASSERT_TRUE(factors.factor(code, slots.data()));
+  factors.solve(sides);
+  // Diagonally dominant by half: the condition is below 3.
+  EXPECT_LT((sides - known).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_EQ(factors.determinant_sign(), 1);
+}
+
 TEST(LoopMatrix, OfALongLoopKnowsTheSignOfItsDeterminant) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const LoopChain chain(seed);

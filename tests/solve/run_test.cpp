@@ -236,6 +236,21 @@ TEST(Run, GoesToAShortPulseByLongSteps) {
   }
 }
 
+// Early in a run of a second, and in one of 2³⁰: behind the pulse the steps become long again, in either.
+TEST(Run, TakesTheSameStepsBehindAPulseInAnyUnitOfTime) {
+  const auto run_in = [](double unit) {
+    const Compiled made(
+        fmt::format("p = {{ type = \"time-function\", formula = \"exp(-((time/{0} - 0.1)*1e3)^2)/{0}\" }}\n"
+                    "x = {{ type = \"integrator\", in = [\"p\"] }}\n",
+                    unit));
+    return run_of(made, {.until = unit, .samples = 11, .max_steps = 10'000});
+  };
+  const auto brief = run_in(1), lasting = run_in(std::ldexp(1.0, 30));
+  EXPECT_EQ(lasting.statistics.steps, brief.statistics.steps);
+  EXPECT_NEAR(row_values(brief, "x").back(), std::sqrt(std::numbers::pi) / 1e3, 1e-7);
+  EXPECT_EQ(row_values(lasting, "x"), row_values(brief, "x"));
+}
+
 // A pulse upon a signal that does not vanish beside it: twice as high as that, and two milliseconds long.
 TEST(Run, SeesAPulseUponASteadySignal) {
   const Compiled made(R"toml(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Modes of operation, phases, and runs that are gone on with.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -395,6 +396,29 @@ TEST(Run, FindsExtremesBetweenItsRows) {
   const auto finer = run(made.program, made.flat, options);
   EXPECT_NEAR(finer.extremes[0].maximum.value, 1, 1e-10);
   EXPECT_NEAR(finer.extremes[1].minimum.value, -1, 1e-10);
+}
+
+// Steps of a second and more: no row of the same run, however near to each other they are, is beyond its
+// extremes, but by what parabolas through neighbours 1/256 of a step away leave.
+TEST(Run, FindsExtremesWithinLongSteps) {
+  const Compiled made(R"toml(
+x = { type = "integrator", in = ["v"], initial = 1 }
+v = { type = "integrator", in = ["-x", "-0.2*v"] }
+)toml");
+  RunOptions options;
+  options.until = 10;
+  options.tolerance = 1e-2;
+  options.method = diagram::IntegrationMethod::rodas;
+  options.samples = 20'001;
+  const auto rows = run(made.program, made.flat, options);
+  ASSERT_LT(rows.statistics.steps, 20);
+  options.extremes = true;
+  const auto found = run(made.program, made.flat, options).extremes;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::vector<double> values = row_values(rows, k == 0 ? "x" : "v");
+    EXPECT_LE(found[k].minimum.value, *std::min_element(values.begin(), values.end()) + 1e-9);
+    EXPECT_GE(found[k].maximum.value, *std::max_element(values.begin(), values.end()) - 1e-9);
+  }
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/solve/events/rate_probe.h>
+
 #include "../../support/runs.h"
 
 namespace oblique::solve {
@@ -121,6 +123,96 @@ TEST(Branch, EndsInsideTheSolversStepToo) {
   ASSERT_EQ(result.events.size(), 1U);
   EXPECT_NEAR(result.events[0].time, 0.6 + kFold, 1e-8);
   EXPECT_NEAR(row_values(result, "z").back(), exact, 1e-6);  // a hundred times the tolerance
+}
+
+// A comparator turns over just before the branch ends, in the last step that the solver tries there: x, on
+// which neither of them acts, goes on as it went. Late in a run the time shows 1e-10 s, and the end of a
+// branch is found to 1e-4 s.
+TEST(Branch, EndsBehindASwitchOfTheSameStep) {
+  using diagram::IntegrationMethod;
+  for (const double before : {1.6e-11, 2e-11, 2.5e-11}) {
+    const Compiled made(cubic(R"(u = { type = "step", at = 1e6, from = 0, to = 1 }
+x = { type = "integrator", in = "u", initial = -0.6 }
+)",
+                              kIdeal) +
+                        fmt::format(R"(z = {{ type = "transfer-lag", in = "y", initial = -1.2 }}
+level = {{ type = "constant", value = {:.17g} }}
+c = {{ type = "comparator", in = ["x", "-level"] }}
+)",
+                                    kFold - before));
+    for (const auto method : {IntegrationMethod::adams, IntegrationMethod::bdf, IntegrationMethod::rodas}) {
+      const auto result = run_of(made, {.until = 1e6 + 2, .samples = 11, .method = method});
+      EXPECT_NEAR(row_values(result, "x").back(), 1.4, 1e-9) << before;
+    }
+  }
+}
+
+// x turns back 2e-7 below the end of the branch. Shortly before, something that acts on nothing turns over,
+// or slides from then on: where it goes is seen from states that are moved on straight by up to 1e-6, beyond
+// that end. y stays on its branch all the same.
+TEST(Branch, IsNotLeftWhereStatesAreMovedOnToSeeWhereASwitchGoes) {
+  const double top = kFold - 2e-7;
+  const std::string level =
+      fmt::format("l = {{ type = \"constant\", value = {:.17g} }}\n", top - 2.5e-7);  // met at 0.999
+  for (const std::string& beside :
+       {level + "c = { type = \"comparator\", in = [\"x\", \"-l\"] }\n",
+        level +
+            "d = { type = \"summer\", in = [\"x\", \"-l\"] }\na = { type = \"absolute-value\", in = \"d\" "
+            "}\n" +
+            "w = { type = \"integrator\", in = \"1e-5*a\" }\n",
+        std::string("r = { type = \"integrator\", in = \"-1e-4*s\", initial = 0.999e-4 }\n"
+                    "s = { type = \"sign\", in = \"r\" }\n")}) {
+    const Compiled made(
+        cubic(fmt::format(R"toml(u = {{ type = "time-function", formula = "-0.5*(time-1)*exp(-(time-1)^2)" }}
+x = {{ type = "integrator", in = "u", initial = {:.17g} }}
+z = {{ type = "integrator", in = "1e-5*y" }}
+)toml",
+                          top - 0.25 * (1 - std::exp(-1))),
+              kIdeal) +
+        beside);
+    const auto result = run_of(made, {.until = 1e4, .tolerance = 1e-10, .samples = 11});
+    EXPECT_EQ(result.event_count, 2) << beside;
+    const double x = row_values(result, "x").back(), y = row_values(result, "y").back();
+    EXPECT_NEAR(x, top - 0.25, 1e-8);  // a hundred tolerances
+    EXPECT_NEAR(y * y * y - y, x, 1e-12);
+    EXPECT_LT(y, -1 / std::sqrt(3.0)) << beside;
+  }
+}
+
+TEST(RateProbe, LeavesALoopOnItsBranch) {
+  const Compiled made(
+      cubic(kRising, kIdeal) +
+      "z = { type = \"integrator\", in = \"y\" }\nc = { type = \"comparator\", in = \"x\" }\n");
+  network::Workspace workspace(made.program);
+  const std::vector<double> x{kFold - 5e-7, 0};
+  std::vector<double> event_functions(1);
+  const auto here = made.program.event_functions(0, x.data(), event_functions.data(), workspace);
+  RateProbe probe(made.program, workspace, 2);
+  probe.begin(here.value(), 0);
+  const double y = workspace.unknown(0);
+  ASSERT_LT(y, -1 / std::sqrt(3.0));
+  EXPECT_TRUE(probe.look(std::vector<std::uint32_t>{0}, 0, x));  // 1e-6 on
+  EXPECT_EQ(workspace.unknown(0), y);
+}
+
+// One that turns over 1e-4 to 1e-8 before the branch ends takes nothing from the jump, which is told.
+TEST(Branch, EndsWithAJumpThatIsToldBehindASwitchToo) {
+  using diagram::IntegrationMethod;
+  for (int k = 0; k <= 40; ++k) {
+    const double before = std::pow(10.0, -4 - 0.1 * k);
+    const Compiled made(cubic(kRising, kIdeal) + fmt::format(R"(z = {{ type = "integrator", in = "y" }}
+level = {{ type = "constant", value = {:.17g} }}
+c = {{ type = "comparator", in = ["x", "-level"] }}
+)",
+                                                             kFold - before));
+    for (const auto method : {IntegrationMethod::adams, IntegrationMethod::bdf, IntegrationMethod::rodas}) {
+      const auto result = run_of(made, {.until = 2, .samples = 11, .method = method});
+      ASSERT_EQ(result.events.size(), 2U) << before;
+      EXPECT_NEAR(result.events[0].time, 0.6 + kFold - before, 1e-10);
+      EXPECT_NEAR(result.events[1].time, 0.6 + kFold, 1e-9);  // found to 1e-10 of the run
+      EXPECT_THAT(result.events[1].what, StartsWith("jumps where its branch ends: y from -0.57"));
+    }
+  }
 }
 
 // Jumps there and back, seven in twenty seconds, and the loop closes through no state: only the rows see it.

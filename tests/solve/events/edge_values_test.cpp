@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/solve/events/edge_values.h>
+
 #include "../../support/runs.h"
 
 namespace oblique::solve {
@@ -70,6 +72,44 @@ TEST(EdgeValues, AreThoseOfTheLastPlaceInside) {
       for (const double value : row_values(run, "f")) EXPECT_TRUE(std::isfinite(value)) << made.expression;
     }
   }
+}
+
+/// dx/dt of one state at x beyond the edge or on it, with all switches above, where the solver stood at
+/// `from`.
+double edge_rate(const Compiled& made, double from, double x) {
+  network::Workspace workspace(made.program);
+  for (const network::Switch& s : made.program.switches()) workspace.set_discrete_state(s.discrete_state, 1);
+  EdgeValues edges(made.program, workspace, 1);
+  edges.stand_at(0, {&from, 1});
+  double rate = 0;
+  made.program.derivatives(0, &x, &rate, workspace);
+  EXPECT_TRUE(edges.complete_derivatives(0, &x, {&rate, 1}));
+  return rate;
+}
+
+// 2 + x ln x is 2 at the edge, whatever it is where the solver stood; x ln x of the last place inside is
+// 4e-15.
+TEST(EdgeValues, BeyondTheEdgeAreThoseOfTheEdge) {
+  const diagram::BlockLibrary blocks = blocks_with("if(in > 0, 2 + in*log(in), 0)");
+  const Compiled made(R"toml(
+f = { type = "own", in = "x" }
+x = { type = "integrator", in = "f" }
+)toml",
+                      "", blocks);
+  for (const double from : {0.5, 3.0}) EXPECT_NEAR(edge_rate(made, from, -0.25), 2, 1e-13);
+}
+
+// √x, written as 0/0 on the edge, is taken as far inside where another switch reads the same.
+TEST(EdgeValues, AreTakenOnceInsideOfAnEdgeThatSwitchesShare) {
+  const diagram::BlockLibrary blocks = blocks_with("if(in > 0, in/sqrt(in), 0)");
+  const std::string alone = R"toml(
+f = { type = "own", in = "x" }
+x = { type = "integrator", in = "f" }
+)toml";
+  const Compiled shared(alone + "c = { type = \"comparator\", in = \"2*x\" }\n", "", blocks);
+  ASSERT_EQ(shared.program.switches().size(), 2U);
+  ASSERT_EQ(shared.program.switch_structure().members.size(), 1U);
+  EXPECT_EQ(edge_rate(shared, 0, 0), edge_rate(Compiled(alone, "", blocks), 0, 0));
 }
 
 // The row of an event shows what was before it.

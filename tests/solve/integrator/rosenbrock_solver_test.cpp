@@ -241,6 +241,11 @@ TEST(RosenbrockSolver, KeepsSegmentsThatTheTimeDoesNotResolve) {
   EXPECT_EQ(solver.states()[0], 0);
   while (t != 3) t = solver.step();
   EXPECT_NEAR(solver.states()[0] / 1e20, 1, 1e-12);
+  // One of which the time shows the end, a rounding later, but not the middle.
+  const double next = std::nextafter(1.0, 2.0), length = 0.7 * (next - 1);
+  solver.restart(1, zero, next, length);
+  for (int k = 0; k < 100 && t != next; ++k) t = solver.step();
+  EXPECT_NEAR(solver.states()[0] / (1e20 * length), 1, 1e-12);
 }
 
 // Of what was before nothing is left, to the bit; the work goes on being counted.

@@ -224,7 +224,6 @@ Crossing cross_infinity(BranchWalk& walk, std::size_t g, double t) {
   if (walk.stops_at_infinity) return Crossing::passed;
   walk.accept(to);
   walk.step = std::abs(left);
-  walk.probe(1e-2 * left);
   return Crossing::passed;
 }
 

@@ -100,7 +100,6 @@ void LoopMatrix::prepare(const LoopCode& loop) {
     sparse_ = std::make_unique<Sparse>(loop);
   } else {
     matrix_.resize(eigen_index(loop.size()), eigen_index(loop.size()));
-    lu_ = Eigen::PartialPivLU<Eigen::MatrixXd>(eigen_index(loop.size()));
   }
 }
 

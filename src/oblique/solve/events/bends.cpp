@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/kept_unknowns.h>
 #include <oblique/solve/events/position_limits.h>
 
 namespace oblique::solve {
@@ -67,26 +68,29 @@ std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here
   std::vector<bool> at_once(is_one_.size(), false), by_later(is_one_.size(), false);
   const double step = std::min(kProbe / fastest, kProbe * span_);
   for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * derivatives_[i];
-  if (const auto later =
-          program_.event_functions(t + step, moved_.data(), event_functions_.data(), workspace_)) {
-    later->derivatives(derivatives_.data());
-    program_.decide_in_order(t + step, moved_.data(), derivatives_.data(), workspace_,
-                             [&](std::uint32_t s, double /*event_function*/, double later_rate) {
-                               if (!is_one_[s]) return;
-                               const double rate = first_rates_[s];
-                               if (moves(rate, kRounding) && !is_about_to_turn(rate, later_rate, step)) {
-                                 go(s, rate);
-                                 at_once[s] = true;
-                               } else if (moves(later_rate, 10 * kRounding)) {
-                                 go(s, later_rate);
-                                 by_later[s] = true;
-                               } else if (s == structure.members[structure.unit[s]].front()) {
-                                 resting_.push_back(structure.unit[s]);
-                               }
-                             });
-    keep_where_both_sides_lead_back(t + step, moved_, by_later);
-    keep_where_both_sides_lead_back(t, x, at_once);
+  {
+    const KeptUnknowns kept(program_, workspace_);
+    if (const auto later =
+            program_.event_functions(t + step, moved_.data(), event_functions_.data(), workspace_)) {
+      later->derivatives(derivatives_.data());
+      program_.decide_in_order(t + step, moved_.data(), derivatives_.data(), workspace_,
+                               [&](std::uint32_t s, double /*event_function*/, double later_rate) {
+                                 if (!is_one_[s]) return;
+                                 const double rate = first_rates_[s];
+                                 if (moves(rate, kRounding) && !is_about_to_turn(rate, later_rate, step)) {
+                                   go(s, rate);
+                                   at_once[s] = true;
+                                 } else if (moves(later_rate, 10 * kRounding)) {
+                                   go(s, later_rate);
+                                   by_later[s] = true;
+                                 } else if (s == structure.members[structure.unit[s]].front()) {
+                                   resting_.push_back(structure.unit[s]);
+                                 }
+                               });
+      keep_where_both_sides_lead_back(t + step, moved_, by_later);
+    }
   }
+  keep_where_both_sides_lead_back(t, x, at_once);
   return program_.event_functions(t, x.data(), event_functions.data(), workspace_);
 }
 

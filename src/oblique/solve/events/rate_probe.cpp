@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <oblique/solve/events/kept_unknowns.h>
 #include <oblique/solve/events/position_limits.h>
 
 namespace oblique::solve {
@@ -39,6 +40,7 @@ void RateProbe::begin(const network::Evaluation& here, double least) {
 }
 
 bool RateProbe::look(std::span<const std::uint32_t> switches, double t, std::span<const double> x) {
+  const KeptUnknowns kept(program_, workspace_);
   find_noise(t, x);
   step_ = std::min(kProbe / fastest_, kProbe * span_);
   for (const std::uint32_t s : switches) {

@@ -31,6 +31,8 @@ SideTrials::SideTrials(const network::Program& program, network::Workspace& work
 void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x) {
   units_ = std::move(units);
   before_.assign(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  unknowns_.clear();
+  for (std::size_t u = 0; u < program_.unknowns().size(); ++u) unknowns_.push_back(workspace_.unknown(u));
   event_functions_before_.resize(event_functions_.size());
   if (!program_.event_functions(t, x.data(), event_functions_before_.data(), workspace_))
     event_functions_before_.assign(event_functions_.size(), 0);
@@ -39,6 +41,11 @@ void SideTrials::run(std::vector<std::uint32_t> units, Bends& bends, double t, s
   for (Combination sides = 0; sides < combinations(); ++sides) trials_.push_back(attempt(sides, bends, t, x));
   find_scales();
   find_broken();
+}
+
+void SideTrials::take_back() {
+  workspace_.load_discrete_states(before_);
+  for (std::size_t u = 0; u < unknowns_.size(); ++u) workspace_.set_unknown(u, unknowns_[u]);
 }
 
 /// Where an event function jumps with the position of another unit, but by nothing here, it is not broken by

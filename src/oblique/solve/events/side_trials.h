@@ -34,8 +34,8 @@ class SideTrials {
   /// agrees with it.
   std::optional<network::Evaluation> place(Combination sides, Bends& bends, double t,
                                            std::span<const double> x);
-  /// Places them as they were.
-  void take_back() { workspace_.load_discrete_states(before_); }
+  /// Places them as they were, and the loops.
+  void take_back();
 
   /// Whether the solution goes from every switching surface to the side that its unit stands on. Where the
   /// equations only bend there, both sides are right to the rounding of the event function, unless it is
@@ -82,7 +82,7 @@ class SideTrials {
   double span_;
   std::vector<std::uint32_t> units_;
   std::vector<std::uint64_t> broken_by_;      ///< of each of them, see SlidingMode
-  std::vector<double> before_;                ///< discrete states
+  std::vector<double> before_, unknowns_;     ///< discrete states, and unknowns of loops
   std::vector<std::optional<Trial>> trials_;  ///< of each combination; nothing where it has no values
   double fastest_ = 0;
   std::vector<RateScale> scales_;  ///< of each unit, in all trials

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include <oblique/solve/events/kept_unknowns.h>
 #include <oblique/solve/events/position_limits.h>
 #include <oblique/solve/events/slide_shares.h>
 
@@ -321,7 +322,11 @@ bool SlidingMode::lasts(double t, std::span<const double> x) {
   for (const double rate : moved_) fastest = std::max(fastest, std::abs(rate));
   const double dt = std::min(kSoon / fastest, kSoon * span_);
   for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = x[i] + dt * moved_[i];
-  const bool valid = evaluate(t + dt, moved_);
+  const auto look = [&] {
+    const KeptUnknowns kept(program_, workspace_);
+    return evaluate(t + dt, moved_);
+  };
+  const bool valid = look();
   bool stays = valid && !(largest_jump().value_or(0) > 0);
   for (std::size_t u = 0; stays && u < now.size(); ++u) stays = std::abs(shares_[u] - now[u]) < kJump;
   shares_ = now;

@@ -224,7 +224,9 @@ const Interpolant& Switching::looked_at(double t, const Interpolant& solution) {
   if (!event_functions_.steps_damp() || !(location_.nearest() < kNear * tolerance_)) return solution;
   std::vector<double> x(program_.n_states());
   solution.states_at(t, x);
+  workspace_.pass_failing_loops(true);  // the branch of one may end within the step
   event_functions_.evaluate(t, x, location_.announced());
+  workspace_.pass_failing_loops(false);
   if (!event_functions_.is_any_fine()) return solution;
   event_functions_.damped().begin(solution, t);
   return event_functions_.damped();

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/solve/events/kept_unknowns.h>
+
 namespace oblique::solve {
 namespace {
 
@@ -65,8 +67,7 @@ std::vector<double> UncertainReadings::values_with(std::span<const Turned> posit
                                                    std::span<const double> x) {
   const std::vector<double> discrete_states(workspace_.discrete_states().begin(),
                                             workspace_.discrete_states().end());
-  std::vector<double> unknowns(program_.unknowns().size());
-  for (std::size_t u = 0; u < unknowns.size(); ++u) unknowns[u] = workspace_.unknown(u);
+  const KeptUnknowns kept(program_, workspace_);
   for (const auto& [s, position] : positions)
     workspace_.set_discrete_state(program_.switches()[s].discrete_state, position);
   std::vector<double> values;
@@ -77,7 +78,6 @@ std::vector<double> UncertainReadings::values_with(std::span<const Turned> posit
     }
   }
   workspace_.load_discrete_states(discrete_states);
-  for (std::size_t u = 0; u < unknowns.size(); ++u) workspace_.set_unknown(u, unknowns[u]);
   return values;
 }
 
