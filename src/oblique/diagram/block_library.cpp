@@ -39,10 +39,9 @@ class BlockLibrary::Entry {
 
   /// Several threads may ask at once.
   const BlockDefinition& definition() const {
-    std::call_once(once_, [this] {
-      if (!parsed_)
-        parsed_ = parse_block(file_.text, fmt::format("blocks/{}.toml", file_.name), std::string(file_.name));
-    });
+    const std::lock_guard lock(guard_);
+    if (!parsed_)
+      parsed_ = parse_block(file_.text, fmt::format("blocks/{}.toml", file_.name), std::string(file_.name));
     return *parsed_;
   }
 
@@ -53,7 +52,7 @@ class BlockLibrary::Entry {
 
  private:
   ShippedFile file_{};
-  mutable std::once_flag once_;
+  mutable std::mutex guard_;
   mutable std::optional<BlockDefinition> parsed_;
 };
 
