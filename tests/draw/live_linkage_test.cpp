@@ -64,14 +64,14 @@ TEST(LiveLinkage, DrawsTheAnalogMechanismWhereItIsTold) {
   for (const mechanism::PointState& point : motion.configurations[7].points)
     places.push_back(point.position + Vector2d(0.1, -0.2));
   const std::size_t c = mechanism.find_point("C").value();
-  const draw::Mark* const pin = find_in(live.analog(places), "analog-pin-C");
+  const std::vector<draw::Mark> drawn = live.analog(places);
+  const draw::Mark* const pin = find_in(drawn, "analog-pin-C");
   ASSERT_NE(pin, nullptr);
   EXPECT_LT((std::get<draw::Disc>(pin->shape).centre - live.pixel(places[c])).norm(), 1e-9);
-  const std::size_t all = live.analog(places).size();
   places[c].x() = std::nan("");
   const std::vector<draw::Mark> fewer = live.analog(places);
   EXPECT_EQ(find_in(fewer, "analog-pin-C"), nullptr);
-  EXPECT_EQ(fewer.size(), all - 3);  // the pin and the two links that it joins
+  EXPECT_EQ(fewer.size(), drawn.size() - 3);  // the pin and the two links that it joins
 }
 
 }  // namespace
