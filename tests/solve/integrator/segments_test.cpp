@@ -73,6 +73,31 @@ y = { type = "integrator", in = "x" }
   EXPECT_NEAR(row_values(result, "y").back(), 100 * 0.00125, 1e-7);
 }
 
+// A play between gears that drives itself through a delay line comes to rest at the edge of its play: the
+// sample of t = 0.78125 leads from there into the play, where nothing moves, and the step goes on beyond it.
+// That the sample has come, and the play not yet been left, is no state of which the step may be read: y was
+// 0.06 there between two points at zero.
+TEST(Clocks, OneThatLeadsIntoADeadZoneLeavesTheStepAsItWas) {
+  const Compiled made(R"toml(
+u = { type = "delay-line", in = "-y", delay = 0.3125, stages = 2, straight = 0, initial = 0.75 }
+y = { type = "backlash", in = "0.5*u", play = 0.25, rate = 484 }
+)toml");
+  using diagram::IntegrationMethod;
+  RunOptions options;
+  options.until = 2;
+  options.tolerance = 1e-9;
+  options.max_step = 0.140625;
+  for (const auto method : {IntegrationMethod::bdf, IntegrationMethod::rodas}) {
+    options.method = method;
+    const Trajectory result = run(made.program, made.flat, options).trajectory;
+    const std::vector<double> y = testing::column_of(result, "y");
+    for (std::size_t row = 0; row < result.rows(); ++row) {
+      // At 0.625 it has moved to zero for 484 (0.625 − 0.46875) = 76 of its time constants.
+      if (result.at(row, 0) > 0.625) EXPECT_NEAR(y[row], 0, 1e-9) << result.at(row, 0);
+    }
+  }
+}
+
 // After a million seconds the time shows nothing shorter than 1e-10 s: pulses of a hundredth of that have
 // their area, 1, all the same, by each method; the first comes at 1 000 005 s.
 TEST(Clocks, APulseThatTheTimeDoesNotShowHasItsLength) {

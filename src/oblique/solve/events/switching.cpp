@@ -227,9 +227,7 @@ const Interpolant& Switching::looked_at(double t, const Interpolant& solution) {
   workspace_.pass_failing_loops(true);  // the branch of one may end within the step
   event_functions_.evaluate(t, x, location_.announced());
   workspace_.pass_failing_loops(false);
-  if (!event_functions_.is_any_fine()) return solution;
-  event_functions_.damped().begin(solution, t);
-  return event_functions_.damped();
+  return event_functions_.within_step(solution);
 }
 
 /// Looks at t at what lies on the wrong side by less than an error that it had at another time: whether that

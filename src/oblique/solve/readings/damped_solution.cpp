@@ -6,6 +6,14 @@
 
 namespace oblique::solve {
 
+bool DampedSolution::begin(const Interpolant& polynomial, double length, double t, std::span<const double> x,
+                           const network::Workspace& workspace) {
+  polynomial_ = &polynomial;
+  end_ = t;
+  damping_.take_steps(length);
+  return damping_.linearise(t, x, workspace);
+}
+
 void DampedSolution::states_at(double t, std::span<double> x) const {
   polynomial_->states_at(t, x);
   rates_.resize(x.size());

@@ -26,6 +26,7 @@ EventFunctions::EventFunctions(const network::Program& program, network::Workspa
       thresholds_(program),
       errors_(program, tolerance, absolute_tolerance),
       damping_(program),
+      damped_(program),
       values_(program.switches().size()),
       known_rates_(values_.size()) {}
 
@@ -76,6 +77,12 @@ bool EventFunctions::is_any_fine() {
     if (!is_known(s) && errors[s] < kPart * undamped && std::abs(values_[s]) < kNear * undamped) return true;
   }
   return false;
+}
+
+const Interpolant& EventFunctions::within_step(const Interpolant& solution) {
+  const bool damps =
+      is_any_fine() && damped_.begin(solution, damping_.step_length(), time_, states_, workspace_);
+  return damps ? static_cast<const Interpolant&>(damped_) : solution;
 }
 
 const EventFunctionErrors& EventFunctions::weigh_errors() {

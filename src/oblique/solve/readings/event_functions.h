@@ -41,11 +41,9 @@ class EventFunctions {
   /// See ErrorDamping.
   void take_steps(double length) { damping_.take_steps(length); }
   bool steps_damp() const { return damping_.any(); }
-  /// Whether some event function, evaluated at the end of a step, is so near to zero that only its damped
-  /// error tells its side: then the solution within the step is to be read by `damped`.
-  bool is_any_fine();
-  /// The solution with its errors damped, as linearised by `is_any_fine`.
-  DampedSolution& damped() { return damped_; }
+  /// The solution within a step, at whose end all was evaluated: with its errors damped where some event
+  /// function is so near to zero there that only its damped error tells its side.
+  const Interpolant& within_step(const Interpolant& solution);
 
   // As `evaluate` has found them, whatever has been evaluated since:
   std::size_t size() const { return values_.size(); }
@@ -77,6 +75,7 @@ class EventFunctions {
 
  private:
   bool is_any_due(const Announced& announced) const;
+  bool is_any_fine();
 
   const network::Program& program_;
   network::Workspace& workspace_;
@@ -85,7 +84,7 @@ class EventFunctions {
   Thresholds thresholds_;
   EventFunctionErrors errors_;
   ErrorDamping damping_;
-  DampedSolution damped_{damping_};
+  DampedSolution damped_;
   std::optional<network::Evaluation> here_;
   std::vector<double> values_, states_;
   double time_ = 0;
