@@ -2,8 +2,10 @@
 // Cases whose poses are known. Random ones stand in random_triad_test.cpp.
 #include <oblique/mechanism/triad/triad.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -226,6 +228,37 @@ TEST(Triad, FindsTwoModesInOneDirection) {
   EXPECT_LT(distance_to(modes, {{3, 1}, 1, 0}), 1e-13);
   expect_closed(legs, modes, 1e-13);
   EXPECT_EQ(static_cast<std::size_t>(modes.count), scan_poses(legs, 1000).size());
+}
+
+// Two rods of one length, parallel where the platform has the direction of its base, hold that direction
+// alone; the third then says where it stands, to either side. Whichever rod comes first, and however the
+// parallelogram lies, both modes are there: where u of one rod is rounding alone, D and N are so too.
+TEST(Triad, FindsBothModesOfAParallelogramHeldByARod) {
+  const std::array<Vector2d, 3> locals = {Vector2d(1.125, 0), Vector2d(1.6875, -0.5625), Vector2d(0, 0)};
+  const std::array<Vector2d, 3> centres = {Vector2d(-1.7, 0), Vector2d(-1.7, 0), Vector2d(0.9, 0)};
+  for (int k = 0; k < 40; ++k) {
+    const double turn = 0.1 + 0.157 * k, slant = 0.3 * k;
+    const Vector2d place(0.3 * std::cos(k), 0.2 * k);  // of all
+    std::vector<PlatformPose> poses;
+    for (const double side : {1.2, -1.2}) {
+      poses.push_back({place + rotation(slant) * Vector2d(0.2, side), std::cos(turn), std::sin(turn)});
+    }
+    std::array<std::size_t, 3> order = {0, 1, 2};
+    do {
+      std::array<Leg, 3> legs;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t leg = order[i];
+        const Vector2d centre = place + rotation(slant) * centres[leg];
+        legs[i] = circle(locals[leg], centre + rotation(turn) * locals[leg],
+                         (Vector2d(0.2, 1.2) - centres[leg]).norm());
+      }
+      const PlatformModes modes = platform_modes(legs);
+      EXPECT_FALSE(modes.movable);
+      // They close where they are given to rounding, and stand off by no more than some of it.
+      for (const PlatformPose& pose : poses) EXPECT_LT(distance_to(modes, pose), 1e-13) << k;
+      expect_closed(legs, modes, 1e-13);
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
 }
 
 TEST(Triad, RunsOnParallelGuides) {

@@ -200,14 +200,19 @@ void Triad::visit(Complex z) {
     b = (i + 2) % 3;
   }
   const double sine = std::abs(d) / (modulus(u[a]) * modulus(u[b]));
-  if (sine > (group_.circular ? kWellCrossed : 16 * group_.rounding)) {
-    consider({crossing(lines_[a], lines_[b], z, d), z});
-  } else if (!group_.circular) {
-    consider({u[0] * lines_[0].w(z) / std::norm(u[0]), z});
-  } else if (std::max(modulus(u[0]), modulus(u[1])) >= kShort) {
+  const bool cross_well = sine > (group_.circular ? kWellCrossed : 16 * group_.rounding);
+  if (cross_well) consider({crossing(lines_[a], lines_[b], z, d), z});
+  if (!group_.circular) {
+    if (!cross_well) consider({u[0] * lines_[0].w(z) / std::norm(u[0]), z});
+    return;
+  }
+  const auto [shorter, longer] = std::minmax({modulus(u[0]), modulus(u[1])});
+  if (longer < kShort) {
+    visit_parallel(z);
+  } else if (!cross_well ||
+             shorter < kShort) {  // a parallelogram holds z alone, and both crossings are modes
     visit_crossing(modulus(u[0]) > modulus(u[1]) ? lines_[0] : lines_[1], z);
   }
-  if (group_.circular && std::max(modulus(u[0]), modulus(u[1])) < kShort) visit_parallel(z);
 }
 
 PlatformModes Triad::modes() {
