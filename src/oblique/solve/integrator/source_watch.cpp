@@ -45,9 +45,11 @@ constexpr int kMostForStates = 256;
 /// Parts of a step that are shorter than this power of a half are not looked at for them.
 constexpr int kDeepestForStates = 24;
 
-/// Where bounds of a peak of states cannot tell: so many parts of the first steps, of a single one, and for
-/// every step that follows. A peak in an otherwise quiet step takes two of every length down to its own.
-constexpr int kSavedForPeaks = 20'000, kMostForPeaks = 4096, kEarnedForPeaks = 16;
+/// Where bounds cannot tell of a peak: so many parts of a single step, of the first ones, and for every step
+/// that follows. A peak in an otherwise quiet step takes two of every length down to its own. Of what the
+/// time alone does more is seen: some hundred pulses in one step.
+constexpr int kMostForPeaks = 4096, kSavedForPeaks = 20'000, kEarnedForPeaks = 16;
+constexpr int kMostForPeaksOfTime = 1 << 15, kSavedForPeaksOfTime = 1 << 17, kEarnedForPeaksOfTime = 64;
 
 constexpr int kDeepest = 40;
 /// Of a source by states that may be any number, as a quotient of zeros, or one of the time that has no value
@@ -64,13 +66,19 @@ double resolution(double t) {
 
 SourceWatch::SourceWatch(const network::Program& program, const network::Workspace& workspace, Shown shown,
                          const std::string& file)
-    : program_(program), workspace_(workspace), file_(file), shown_(shown), saved_for_peaks_(kSavedForPeaks) {
+    : program_(program),
+      workspace_(workspace),
+      file_(file),
+      shown_(shown),
+      of_states_{kMostForPeaks, kSavedForPeaks, kEarnedForPeaks},
+      of_time_{kMostForPeaksOfTime, kSavedForPeaksOfTime, kEarnedForPeaksOfTime} {
   for (const network::Source& source : program.sources()) {
     if (source.acts || shown != Shown::nothing) watched_.push_back(source);
   }
   if (!watched_.empty()) slots_ = program.source_slots();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   largest_.assign(watched_.size(), 0);
+  widest_.assign(watched_.size(), 0);
   seen_.assign(watched_.size(), {kInfinity, -kInfinity});
   masked_.assign(watched_.size(), false);
   if (!active()) return;
@@ -146,6 +154,12 @@ bool SourceWatch::hides_extreme(std::size_t k, double a, double b, const network
   return range.high > known.high + same || range.low < known.low - same;
 }
 
+/// Whether a source of the time is next to nothing at both ends of a part, beside what bounds have ever left
+/// open: it may have a peak in between, or be zero because its terms cancel, which no bounds can know.
+bool SourceWatch::is_nothing(std::size_t k, double a, double b) const {
+  return std::max(std::abs(a), std::abs(b)) <= kNothing * widest_[k];
+}
+
 /// Whether not every source goes from `from` to `to` as its values there tell.
 SourceWatch::Hidden SourceWatch::hidden(double from, const Values& at_from, double to, const Values& at_to,
                                         int depth) {
@@ -162,9 +176,13 @@ SourceWatch::Hidden SourceWatch::hidden(double from, const Values& at_from, doub
       // short.
       value.low = std::max(value.low, a + derivative.low * (to - from));
       value.high = std::min(value.high, a + derivative.high * (to - from));
+      if (std::isfinite(value.width())) widest_[k] = std::max(widest_[k], value.width());
     }
+    const bool may_be_peak = !watched_[k].by_states && is_nothing(k, a, b);
+    if (may_be_peak && of_time_.left <= 0) continue;
+    const Hidden kind = may_be_peak ? Hidden::peak_of_time : Hidden::other;
     if (watched_[k].switch_index) {
-      if (value.contains(0) && may_turn(watched_[k], a, b, value, depth)) return Hidden::other;
+      if (value.contains(0) && may_turn(watched_[k], a, b, value, depth)) found = std::max(found, kind);
       continue;
     }
     const double shown =
@@ -174,10 +192,11 @@ SourceWatch::Hidden SourceWatch::hidden(double from, const Values& at_from, doub
       continue;
     const bool is_shown = value.width() <= shown;
     if (!watched_[k].by_states) {
-      if (!is_shown || hides_extreme(k, a, b, value)) return Hidden::other;
-    } else if (!is_shown && parts_for_peaks_ > 0) {
-      found = Hidden::peak_of_states;
+      if (!is_shown || hides_extreme(k, a, b, value)) found = std::max(found, kind);
+    } else if (!is_shown && of_states_.left > 0) {
+      found = std::max(found, Hidden::peak_of_states);
     }
+    if (found == Hidden::other) break;
   }
   return found;
 }
@@ -198,17 +217,21 @@ void SourceWatch::part(double from, const Values& at_from, double to, const Valu
   const auto take = [&](double a, const Values& at_a, double b, const Values& at_b, Hidden what) {
     const bool goes_on = depth + 1 < kDeepest && b - a > resolution(b) && times_.size() < kMostSamples;
     if (what == Hidden::nothing || !goes_on) return times_.push_back(b);
-    if (what == Hidden::peak_of_states) --parts_for_peaks_;
+    if (what == Hidden::peak_of_states) --of_states_.left;
+    if (what == Hidden::peak_of_time) --of_time_.left;
     part(a, at_a, b, at_b, depth + 1);
   };
   const Values at_middle = values_at(middle);
   const Hidden first = hidden(from, at_from, middle, at_middle, depth + 1);
   const Hidden second = hidden(middle, at_middle, to, at_to, depth + 1);
   const bool both = first != Hidden::nothing && second != Hidden::nothing;
-  const int kept = both ? parts_for_peaks_ / 2 : 0;
-  parts_for_peaks_ -= kept;
+  const int of_states = both ? of_states_.left / 2 : 0,
+            of_time = both ? of_time_.left / 2 : 0;  // of the other
+  of_states_.left -= of_states;
+  of_time_.left -= of_time;
   take(from, at_from, middle, at_middle, first);
-  parts_for_peaks_ += kept;
+  of_states_.left += of_states;
+  of_time_.left += of_time;
   take(middle, at_middle, to, at_to, second);
 }
 
@@ -230,15 +253,16 @@ const std::vector<double>& SourceWatch::sample_times(double from, double to, con
   }
   solution_ = &solution;
   parts_for_states_ = 0;
-  const int most = std::min(saved_for_peaks_, kMostForPeaks);
-  parts_for_peaks_ = most;
+  of_states_.begin_step();
+  of_time_.begin_step();
   const Values at_from = values_at(from), at_to = values_at(to);
   if (to - from <= resolution(to) || hidden(from, at_from, to, at_to, 0) == Hidden::nothing) {
     times_.push_back(to);
   } else {
     part(from, at_from, to, at_to, 0);
   }
-  saved_for_peaks_ = std::min(saved_for_peaks_ - (most - parts_for_peaks_) + kEarnedForPeaks, kSavedForPeaks);
+  of_states_.end_step();
+  of_time_.end_step();
   return times_;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ namespace oblique::solve {
 /// that bends and reads states, until it has no zero or passes it once, as far as bounds can tell. The
 /// states are bounded by the cubic through their values and rates at the ends of a part, and twice its bend.
 /// What a function makes of differences of states, which hardly change where each of the states does, has no
-/// bounds that tell: of such parts there are some to spend, and a few more at every step.
+/// bounds that tell, nor has a source that is zero because its terms cancel: of such parts there are some to
+/// spend, and a few more at every step.
 class SourceWatch {
  public:
   /// What of the sources is shown: their extremes, or whether they leave ±1 machine unit.
@@ -49,11 +51,22 @@ class SourceWatch {
   struct Values {
     std::vector<double> sources, states, rates;
   };
-  /// What a part of a step may hide.
-  enum class Hidden { nothing, peak_of_states, other };
+  /// What a part of a step may hide; a peak of the time is one of a source that is nothing at both of its
+  /// ends.
+  enum class Hidden { nothing, peak_of_states, peak_of_time, other };
+  /// So many parts where bounds may never tell: of a step at most, of the first steps together, and what
+  /// each later step adds.
+  struct Allowance {
+    int most, saved, earned;
+    int most_saved = saved, at_begin = 0, left = 0;  ///< in the run; in this step, in this part of it
+
+    void begin_step() { left = at_begin = std::min(saved, most); }
+    void end_step() { saved = std::min(saved - (at_begin - left) + earned, most_saved); }
+  };
   Hidden hidden(double from, const Values& at_from, double to, const Values& at_to, int depth);
   void part(double from, const Values& at_from, double to, const Values& at_to, int depth);
   bool may_turn(const network::Source& source, double a, double b, const network::Interval& range, int depth);
+  bool is_nothing(std::size_t k, double a, double b) const;
   bool hides_extreme(std::size_t k, double a, double b, const network::Interval& range) const;
   Values values_at(double t);
   void bound(double from, const Values& at_from, double to, const Values& at_to);
@@ -69,12 +82,12 @@ class SourceWatch {
   std::vector<double> states_, rates_;     ///< all of them, at a time
   std::vector<network::Interval> ranges_;  ///< of the source states
   std::vector<double> largest_;            ///< magnitude of each source so far
+  std::vector<double> widest_;             ///< range of each source over a part so far
   std::vector<network::Interval> seen_;    ///< values of each source so far
   std::vector<bool> masked_;               ///< each source, when it was last asked
   std::vector<double> times_;
-  int parts_for_states_ = 0;  ///< of this step, in which an event function of states had to be looked at
-  int parts_for_peaks_ = 0;   ///< which may still be parted for peaks of states alone, here
-  int saved_for_peaks_;       ///< of them in the run so far
+  int parts_for_states_ = 0;       ///< of this step, in which an event function of states had to be looked at
+  Allowance of_states_, of_time_;  ///< parts for peaks of the one and the other
 };
 
 }  // namespace oblique::solve
