@@ -2,11 +2,13 @@
 // The page in Chromium, from file://, as it is opened. Prints its size, how long it takes until it can be used, and its frames a
 // second.
 import assert from "node:assert/strict";
-import {statSync} from "node:fs";
+import {readFileSync, statSync} from "node:fs";
 import {cpus} from "node:os";
 import test from "node:test";
+import {gunzipSync} from "node:zlib";
 
 import {button, choose, opened, studio, text, timeOf, wait} from "./browser.mjs";
+import {newEngine} from "./support.mjs";
 
 // Which part of the cores' time nobody uses, over half a second.
 async function idlePart() {
@@ -54,5 +56,35 @@ test("opens class III from a file, runs and moves it, and asks for nothing", asy
   await wait(1500);
   assert.ok(await timeOf(page) > 0.3);
   console.log(`the four-bar runs and moves at ${await framesOf(page)} frames a second`);
+  await page.close();
+});
+
+test("carries the patch of class III as the engine makes it, and does not ask for it", async () => {
+  const packed = /id="patch">([^<]*)</.exec(readFileSync(studio, "utf8"))[1];
+  const {name, text: source, ...carried} = JSON.parse(gunzipSync(Buffer.from(packed, "base64")));
+  const engine = await newEngine();
+  const patched = engine.patch(source, {gain: "1e5", split: [], force: false}, name);
+  const {svg} = engine.draw(patched.text, {theme: "auto", data: true}, name);
+  assert.deepEqual(carried, {diagram: patched.text, judgement: patched.judgement, schematic: svg});
+
+  const {page, troubles} = await opened({prepare: () => {
+    globalThis.asked = [];
+    const post = Worker.prototype.postMessage;
+    Worker.prototype.postMessage = function (message, ...rest) {
+      globalThis.asked.push(message.verb);
+      post.call(this, message, ...rest);
+    };
+  }});
+  const asked = async (verb) => (await page.evaluate(() => globalThis.asked)).filter((one) => one === verb).length;
+  await page.waitForFunction(() => document.querySelector("h1 .quiet")?.textContent, {timeout: 30000});  // its machine is there
+  assert.equal(await asked("console.open"), 1);
+  assert.equal(await asked("patch"), 0);
+  await page.$eval("input.gain", (field) => {  // of another gain it has to ask
+    field.value = "1e3";
+    field.dispatchEvent(new Event("change", {bubbles: true}));
+  });
+  await page.waitForFunction(() => globalThis.asked.filter((verb) => verb === "console.open").length === 2, {timeout: 30000});
+  assert.equal(await asked("patch"), 1);
+  assert.deepEqual(troubles, []);
   await page.close();
 });

@@ -4,8 +4,9 @@
 import {spawnSync} from "node:child_process";
 import {createHash} from "node:crypto";
 import {cpSync, existsSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync} from "node:fs";
+import {createRequire} from "node:module";
 import {basename, dirname, join, relative, resolve} from "node:path";
-import {fileURLToPath} from "node:url";
+import {fileURLToPath, pathToFileURL} from "node:url";
 import {gzipSync} from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -56,10 +57,19 @@ const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base
 const policy = `default-src 'none'; script-src ${hash(early)} ${hash(script)} 'wasm-unsafe-eval' blob:; worker-src blob:; style-src 'unsafe-inline'; img-src data: blob:; ` +
   "connect-src 'none'; form-action 'none'; base-uri 'none'";
 
+// What the page would ask the engine first of all (src/patch.ts).
+const {drawing, usualGain} = await import(`data:text/javascript,${encodeURIComponent(bundle("patch.ts", "--format=esm"))}`);
+const {loadEngine} = await import(pathToFileURL(join(built, "engine.mjs")));
+const engine = await loadEngine({createEngine: createRequire(import.meta.url)(join(built, "engine.js")), wasmBinary: readFileSync(join(built, "engine.wasm"))});
+const patched = engine.patch(opening.text, {gain: usualGain, split: [], force: false}, opening.name);
+const drawn = engine.draw(patched.text, drawing, opening.name);
+if (!patched.ok || !drawn.ok) throw new Error(`${opening.name}: ${JSON.stringify([patched, drawn])}`);
+
 const parts = {
   POLICY: policy,
   STYLE: style,
   OPENING: json(opening),
+  PATCH: packed(JSON.stringify({...opening, diagram: patched.text, judgement: patched.judgement, schematic: drawn.svg})),
   EXAMPLES: packed(JSON.stringify(examples)),
   ENGINE: packed(readFileSync(join(built, "engine.wasm"))),
   WORKER: inside(worker),

@@ -7,6 +7,7 @@ import type {Advanced, Answer, Checked, Diagnostic, Drawn, Exchanged, Held, Less
 import {carried} from "./carried";
 import {Machine, Stopped, unpacked} from "./machine";
 import {short} from "./numbers";
+import {drawing, type Patch, ready, usualGain} from "./patch";
 import {Instrument} from "./scope/instrument";
 import {atFirst, type ScopeSettings} from "./scope/settings";
 import type {Repeats} from "./scope/sweeps";
@@ -90,7 +91,7 @@ export class Session {
   readonly machine = new Machine();
   shown: Shown = {
     engine: "starting", busy: false, examples: [], file: opening, written: opening.text, findings: [], remarks: [], kind: "", title: "", lesson: null, diagram: "", schematic: "",
-    gain: "1e5", split: [], held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, pointed: undefined, levels: 0, values: new Map(),
+    gain: usualGain, split: [], held: undefined, pots: [], mode: "initial", time: 0, speed: 1, lamps: [], meter: {name: "", value: NaN, unit: ""}, pointed: undefined, levels: 0, values: new Map(),
     traced: [], against: "", persists: false, scope: atFirst, repeats: undefined, drawn: 0,
   };
   traces = new Traces([], mostRows);
@@ -411,16 +412,14 @@ export class Session {
     if (!isNewest() || !this.good(opened)) return false;
     const gain = how.gain ?? this.shown.gain;
     const split = how.split ?? (next.name === this.shown.file.name ? this.shown.split : []);
-    let diagram = next.text;
+    let diagram = next.text, schematic = "";  // a diagram is drawn by its patch panel
     const remarks: string[] = [];
     if (opened.kind === "mechanism") {
-      const patched = await machine.ask<Patched>("patch", next.text, {gain, split, force: how.force ?? false}, next.name);
-      if (!isNewest() || !this.good(patched)) return false;
-      diagram = patched.text;
-      if (patched.judgement) remarks.push(`as patched, ${patched.judgement}`);
+      const patch = (split.length === 0 ? await ready(next, gain) : undefined) ?? await this.patch(next, {gain, split, force: how.force ?? false}, isNewest);
+      if (!patch) return false;
+      ({diagram, schematic} = patch);
+      if (patch.judgement) remarks.push(`as patched, ${patch.judgement}`);
     }
-    // a diagram is drawn by its patch panel
-    const drawn = opened.kind === "mechanism" ? await machine.ask<Drawn>("draw", diagram, {theme: "auto", data: true}, next.name) : undefined;
     if (!isNewest()) return false;
     // from here on the engine changes: to the end
     if (how.keeps && this.shown.held && opened.kind === "diagram" && this.shown.kind === "diagram" && this.shown.file.name === next.name) {
@@ -444,7 +443,7 @@ export class Session {
     const way = opened.kind === "mechanism" ? held.outputs.slice(2, 4) : [];
     const isWay = way.length === 2;
     this.set({
-      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, split, diagram, schematic: drawn?.ok ? drawn.svg : "", held, remarks, mode, time: stands.ok ? stands.time : held.time, lamps: [], repeats: undefined,
+      file: next, lesson: opened.lesson ?? null, kind: opened.kind, title: opened.title, gain, split, diagram, schematic, held, remarks, mode, time: stands.ok ? stands.time : held.time, lamps: [], repeats: undefined,
       pots: inOrder(held.pots.map((name, k) => ({name, value: values.numbers[k]!, unit: values.units[k] ?? ""}))),
       meter: {name: "", value: NaN, unit: ""}, values: new Map(),
     });
@@ -454,6 +453,14 @@ export class Session {
     await this.look();
     await this.lookAtLamps();
     return true;
+  }
+
+  /// The patch of a mechanism, and its picture; nothing where there is none, or something newer has come.
+  private async patch(file: SharedFile, how: object, isNewest: () => boolean): Promise<Patch | undefined> {
+    const patched = await this.machine.ask<Patched>("patch", file.text, how, file.name);
+    if (!isNewest() || !this.good(patched)) return undefined;
+    const drawn = await this.machine.ask<Drawn>("draw", patched.text, drawing, file.name);
+    return {diagram: patched.text, judgement: patched.judgement, schematic: drawn.ok ? drawn.svg : ""};
   }
 
   /// The machine goes on as another one; nothing where its timeline forbids.
