@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -122,8 +123,8 @@ void expect_overloads_of(const ComparedRun& one, const ComparedRun& other) {
 
 TEST_P(Units, ChangeNothingInTheComparison) {
   const mechanism::Mechanism original = read();
-  const auto comparison = compared(in_unit(original, kUnits[2]));
-  for (const Unit& unit : kUnits) {
+  const auto comparison = compared(in_unit(original, kUnits[0]));
+  for (const Unit& unit : std::span(kUnits).subspan(1)) {
     const auto same = compared(in_unit(original, unit));
     ASSERT_EQ(same.has_value(), comparison.has_value()) << unit.name;
     if (!comparison) continue;

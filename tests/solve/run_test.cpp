@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/solve/run.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/diagram/diagram_reader.h>
+#include <oblique/diagram/diagram_writer.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/integrator/source_watch.h>
@@ -20,6 +24,8 @@ namespace {
 
 using testing::column_of;
 using testing::Compiled;
+using ::testing::HasSubstr;
+using testing::message_of;
 using testing::row_values;
 using testing::run_of;
 
@@ -260,6 +266,96 @@ x = { type = "integrator", in = ["p"] }
   const auto result = run_of(made, {.until = 10, .samples = 11});
   // each of some hundred steps errs by up to a tolerance of 1e-8 of 10; the pulse is 3.5e-3
   EXPECT_NEAR(row_values(result, "x").back(), 10 + 2e-3 * std::sqrt(std::numbers::pi), 1e-5);
+}
+
+TEST(Run, EndsWhereItIsInterrupted) {
+  const Compiled made(kCircleText);
+  RunOptions options;
+  options.until = 1000;
+  int asked = 0;  // at every evaluation
+  options.interrupted = [&] { return ++asked > 500; };
+  const auto result = run(made.program, made.flat, options);
+  EXPECT_GT(result.state.time, 0);
+  EXPECT_LT(result.state.time, 100);
+  EXPECT_EQ(result.state.states.size(), 2U);
+  // Wherever that is within a step, what is kept is the end of a whole one: of x = t on its line.
+  const Compiled line(
+      "one = { type = \"constant\", value = 1 }\nx = { type = \"integrator\", in = \"one\" }\n"
+      "half = { type = \"constant\", value = 0.5 }\n"
+      "s = { type = \"summer\", in = [\"x\", \"-half\"] }\n"
+      "a = { type = \"absolute-value\", in = \"s\" }\n");
+  for (int most = 20; most < 200; ++most) {
+    asked = 0;
+    options.until = 1;
+    options.interrupted = [&] { return ++asked > most; };
+    const auto part = run(line.program, line.flat, options);
+    EXPECT_NEAR(part.state.states[0].second, part.state.time, 1e-8) << most;
+    EXPECT_EQ(part.state.memories[0].second == 1, part.state.time >= 0.5) << most;
+  }
+  asked = 0;
+  options.interrupted = [&] { return ++asked > 0; };
+  EXPECT_EQ(message_of<SolveError>([&] { run(line.program, line.flat, options); }),
+            "d.toml: interrupted before the run had begun: it has no state yet");
+}
+
+TEST(Run, TakesTolerancesOfSingleBlocks) {
+  // Two equal decays to zero, one beside a coarse tolerance of its own: its error may grow to that.
+  const std::string blocks =
+      "a = { type = \"integrator\", in = [\"-a\"], initial = 1 }\nb = { type = \"integrator\", in = "
+      "[\"-30*b\"], initial = 1 }\n";
+  const auto steps = [&](const std::string& run) {
+    return run_of(Compiled(blocks, run), {.until = 20, .samples = 2}).statistics.steps;
+  };
+  EXPECT_LT(steps("[run]\ntolerances = { b = 0.1, a = 0.1 }\n"), steps("") / 2);
+  EXPECT_GT(steps("[run]\ntolerances = { b = 1e-14 }\n"), steps(""));
+  EXPECT_THAT(message_of<diagram::DiagramError>([&] { Compiled(blocks, "[run]\ntolerances = { c = 0 }\n"); }),
+              HasSubstr("tolerance of 'c' in [run] is 0; expected a finite number above 0 [machine unit]"));
+  EXPECT_THAT(message_of<diagram::DiagramError>([&] { Compiled(blocks, "[run]\ntolerances = { c = 1 }\n"); }),
+              HasSubstr("tolerances of [run]: there is no block 'c'"));
+  const diagram::Diagram diagram =
+      diagram::parse_diagram(testing::diagram_text(blocks, "[run]\ntolerances = { a = 0.1 }\n"), "d.toml");
+  EXPECT_EQ(diagram::parse_diagram(diagram::write_diagram(diagram), "d.toml"), diagram);
+}
+
+TEST(Run, FindsExtremesBetweenItsRows) {
+  const Compiled made(
+      "x = { type = \"integrator\", in = [\"y\"], initial = 0.6 }\ny = { type = \"integrator\", in = "
+      "[\"-x\"], initial = 0.8 }");
+  RunOptions options;
+  options.until = 2 * std::numbers::pi;
+  options.samples = 2;
+  options.extremes = true;
+  const auto result = run(made.program, made.flat, options);
+  EXPECT_NEAR(result.extremes[0].maximum.value, 1, 1e-7);  // the solver's tolerance
+  EXPECT_NEAR(result.extremes[0].maximum.time, std::atan2(0.8, 0.6), 1e-3);
+  EXPECT_NEAR(result.extremes[1].minimum.value, -1, 1e-7);
+  options.tolerance = 1e-12;  // of which some hundred steps leave less than 1e-10
+  const auto finer = run(made.program, made.flat, options);
+  EXPECT_NEAR(finer.extremes[0].maximum.value, 1, 1e-10);
+  EXPECT_NEAR(finer.extremes[1].minimum.value, -1, 1e-10);
+}
+
+// Steps of a second and more: no row of the same run, however near to each other they are, is beyond its
+// extremes, but by what parabolas through neighbours 1/256 of a step away leave.
+TEST(Run, FindsExtremesWithinLongSteps) {
+  const Compiled made(R"toml(
+x = { type = "integrator", in = ["v"], initial = 1 }
+v = { type = "integrator", in = ["-x", "-0.2*v"] }
+)toml");
+  RunOptions options;
+  options.until = 10;
+  options.tolerance = 1e-2;
+  options.method = diagram::IntegrationMethod::rodas;
+  options.samples = 20'001;
+  const auto rows = run(made.program, made.flat, options);
+  ASSERT_LT(rows.statistics.steps, 20);
+  options.extremes = true;
+  const auto found = run(made.program, made.flat, options).extremes;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::vector<double> values = row_values(rows, k == 0 ? "x" : "v");
+    EXPECT_LE(found[k].minimum.value, *std::min_element(values.begin(), values.end()) + 1e-9);
+    EXPECT_GE(found[k].maximum.value, *std::max_element(values.begin(), values.end()) - 1e-9);
+  }
 }
 
 }  // namespace

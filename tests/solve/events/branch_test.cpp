@@ -8,8 +8,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <oblique/solve/events/rate_probe.h>
-
 #include "../../support/runs.h"
 
 namespace oblique::solve {
@@ -177,22 +175,6 @@ z = {{ type = "integrator", in = "1e-5*y" }}
     EXPECT_NEAR(y * y * y - y, x, 1e-12);
     EXPECT_LT(y, -1 / std::sqrt(3.0)) << beside;
   }
-}
-
-TEST(RateProbe, LeavesALoopOnItsBranch) {
-  const Compiled made(
-      cubic(kRising, kIdeal) +
-      "z = { type = \"integrator\", in = \"y\" }\nc = { type = \"comparator\", in = \"x\" }\n");
-  network::Workspace workspace(made.program);
-  const std::vector<double> x{kFold - 5e-7, 0};
-  std::vector<double> event_functions(1);
-  const auto here = made.program.event_functions(0, x.data(), event_functions.data(), workspace);
-  RateProbe probe(made.program, workspace, 2);
-  probe.begin(here.value(), 0);
-  const double y = workspace.unknown(0);
-  ASSERT_LT(y, -1 / std::sqrt(3.0));
-  EXPECT_TRUE(probe.look(std::vector<std::uint32_t>{0}, 0, x));  // 1e-6 on
-  EXPECT_EQ(workspace.unknown(0), y);
 }
 
 // One that turns over 1e-4 to 1e-8 before the branch ends takes nothing from the jump, which is told.

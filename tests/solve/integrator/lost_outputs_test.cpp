@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "../support/runs.h"
+#include "../../support/runs.h"
 
 namespace oblique::solve {
 namespace {
