@@ -124,7 +124,7 @@ TEST(Layout, RandomGraphsAreSound) {
 TEST(Layout, DenseGraphsAreSound) {
   std::mt19937 random(7);
   const auto draw = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < 20; ++round) {
     LayoutGraph graph;
     const std::size_t n = 2 + draw(60);
     for (std::size_t v = 0; v < n; ++v) graph.nodes.push_back(plain_box(1 + draw(5), 1 + draw(3)));
