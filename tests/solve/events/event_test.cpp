@@ -190,6 +190,39 @@ out = "seen"
   EXPECT_EQ(row_values(run_of(careful, {.until = 1, .samples = 3}), "w").back(), 1);
 }
 
+// What x is passes its level, which turns a switch block; that sets another integrator, at its limit, to what
+// lies beyond that. x itself has not jumped: it has passed its level once, though within its errors it may
+// lie on either side there. The block turned twice, and was where it had been before.
+TEST(Events, AJumpElsewhereDoesNotLetWhatHasTurnedTurnAgain) {
+  const diagram::BlockLibrary library = shipped_blocks_and("swap", R"([inputs]
+in = {}
+[outputs]
+out = {}
+[memories]
+a = 1
+b = -0.5
+[equations]
+out = "a*sin(in) + b*exp(-in^2)" [[events]] when = "in > 0.25" set = {a = "b", b = "a"}) ");
+      using diagram::IntegrationMethod;
+  for (const char* const rate : {"1", "4"}) {
+    const Compiled made(fmt::format(R"(q = {{ type = "swap", in = "0.3*x" }}
+x = {{ type = "integrator", in = ["-1.85*q", "0.5*x"], rate = 1.25 }}
+y = {{ type = "integrator", in = ["-2*q"], start = "2*x", set = "0.85*q", rate = {}, limit = 1.557578125 }}
+)",
+                                    rate),
+                        "", library);
+    for (const auto method : {IntegrationMethod::adams, IntegrationMethod::bdf, IntegrationMethod::rodas}) {
+      const auto result = run_of(made, {.until = 0.8, .tolerance = 1e-7, .method = method});
+      EXPECT_EQ(std::count_if(result.events.begin(), result.events.end(),
+                              [](const EventRecord& event) { return event.what == "q"; }),
+                1)
+          << rate;
+      const double in = 0.3 * row_values(result, "x").back();
+      EXPECT_NEAR(row_values(result, "q").back(), std::exp(-in * in) - 0.5 * std::sin(in), 1e-12) << rate;
+    }
+  }
+}
+
 TEST(Events, KnownTimesAreMetExactly) {
   const diagram::BlockLibrary library = shipped_blocks_and("pulses", R"([outputs]
 out = {}

@@ -359,7 +359,6 @@ void SwitchSettling::begin_after_events(bool set_states, bool jumped) {
   if (!jumped) return;
   slid_.clear();
   std::fill(rested_.begin(), rested_.end(), false);
-  event_functions_.thresholds().take_all_slack();
 }
 
 void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {

@@ -114,12 +114,14 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
 /// other, or themselves, from line to line and back: then its elements find the lines.
 std::optional<EventActions::Effect> Switching::serve_events(double t, std::vector<double>& x, bool starting) {
   constexpr int kManyHops = 40;
+  const std::vector<double> before(event_functions_.values().begin(), event_functions_.values().end());
   const auto effect = actions_.serve(t, x, starting);
   hops_ = effect && effect->tables ? hops_ + 1 : 0;
   if (!effect) return effect;
   if (hops_ == kManyHops && !slide_.active()) loop_jumps_.settle(t, x);
   settling_.begin_after_events(effect->sets_states, effect->jumps);
   event_functions_.evaluate(t, x, location_.announced());
+  if (effect->jumps) event_functions_.take_slack_since(before);
   location_.withdraw_past(effect->jumps);
   return effect;
 }

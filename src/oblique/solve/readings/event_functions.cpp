@@ -58,6 +58,12 @@ void EventFunctions::keep_at_level(std::uint32_t unit) {
   }
 }
 
+void EventFunctions::take_slack_since(std::span<const double> before) {
+  for (std::size_t s = 0; s < values_.size(); ++s) {
+    if (!(std::abs(values_[s] - before[s]) <= thresholds_.rounding(s))) thresholds_.take_slack(s);
+  }
+}
+
 /// Whether a switch is on the wrong side of its switching surface, or has not turned over though it was
 /// announced.
 bool EventFunctions::is_any_due(const Announced& announced) const {

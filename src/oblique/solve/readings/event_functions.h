@@ -48,6 +48,7 @@ class EventFunctions {
   // As `evaluate` has found them, whatever has been evaluated since:
   std::size_t size() const { return values_.size(); }
   double operator[](std::size_t s) const { return values_[s]; }
+  std::span<const double> values() const { return values_; }
   bool is_off_zero(std::size_t s) const { return std::abs(values_[s]) > thresholds_[s]; }
   /// How far an event function lies on the side on which its switch does not stand.
   double against(std::size_t s) const;
@@ -69,6 +70,10 @@ class EventFunctions {
   /// What a unit of switches lies off its level, as its time was found, counts as nothing until it has left
   /// that behind.
   void keep_at_level(std::uint32_t unit);
+
+  /// States have jumped since these were the values: the errors of before are nothing to what lies elsewhere
+  /// now. (What a jump has left alone has turned over, or not, as before.)
+  void take_slack_since(std::span<const double> before);
 
   const Thresholds& thresholds() const { return thresholds_; }
   Thresholds& thresholds() { return thresholds_; }

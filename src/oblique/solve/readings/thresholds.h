@@ -40,7 +40,11 @@ class Thresholds {
   static constexpr double kMostSlack = 1e-6;
   /// The same, at once.
   void widen(std::size_t s, double slack) { now_[s] = slack_[s] = slack; }
-  void take_all_slack() { std::fill(slack_.begin(), slack_.end(), 0.0); }
+  /// Takes it again, at once: the event function lies elsewhere.
+  void take_slack(std::size_t s) {
+    slack_[s] = 0;
+    if (!program_.switches()[s].rate) now_[s] = roundings_[s];
+  }
   /// Notes how far off an event function is, and takes its slack where that is beyond the errors of the
   /// states: by how much its threshold has become smaller then; it is the rounding there.
   std::optional<double> leave_behind(std::size_t s, double event_function, double rounding);
