@@ -194,7 +194,7 @@ out = "seen"
 // lies beyond that. x itself has not jumped: it has passed its level once, though within its errors it may
 // lie on either side there. The block turned twice, and was where it had been before.
 TEST(Events, AJumpElsewhereDoesNotLetWhatHasTurnedTurnAgain) {
-  const diagram::BlockLibrary library = shipped_blocks_and("swap", R"([inputs]
+  const diagram::BlockLibrary library = shipped_blocks_and("swap", R"toml([inputs]
 in = {}
 [outputs]
 out = {}
@@ -202,8 +202,12 @@ out = {}
 a = 1
 b = -0.5
 [equations]
-out = "a*sin(in) + b*exp(-in^2)" [[events]] when = "in > 0.25" set = {a = "b", b = "a"}) ");
-      using diagram::IntegrationMethod;
+out = "a*sin(in) + b*exp(-in^2)"
+[[events]]
+when = "in > 0.25"
+set = { a = "b", b = "a" }
+)toml");
+  using diagram::IntegrationMethod;
   for (const char* const rate : {"1", "4"}) {
     const Compiled made(fmt::format(R"(q = {{ type = "swap", in = "0.3*x" }}
 x = {{ type = "integrator", in = ["-1.85*q", "0.5*x"], rate = 1.25 }}

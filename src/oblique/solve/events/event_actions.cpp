@@ -72,14 +72,16 @@ bool EventActions::is_zeno(const Come& come, double t) {
 }
 
 /// Whether the condition of an event that came at this instant holds because what it set leads back to it: it
-/// hangs on a switch whose event function is at zero, and does not stay there.
+/// hangs on a switch whose event function is at zero, and does not stay there. (Once states have jumped, at
+/// zero to rounding: what has only just passed it, and lies within its errors, the jump has not led there.)
 bool EventActions::comes_at_once(std::size_t event, double t, std::span<const double> x) {
   if (!came_[event]) return false;
   std::vector<double> others(event_functions_.size());
   bool hangs = false;
   for (std::size_t s = 0; s < event_functions_.size() && !hangs; ++s) {
     if (event_functions_.is_known(s) || settling_.stays(s) || slide_.rests(s) ||
-        event_functions_.is_off_zero(s))
+        event_functions_.is_off_zero(s) ||
+        (jumped_ && std::abs(event_functions_[s]) > event_functions_.thresholds().rounding(s)))
       continue;
     const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
     const double position = workspace_.discrete_state(discrete_state);
@@ -170,6 +172,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
       workspace_.set_discrete_state(change.action->index, change.value);
     }
   }
+  jumped_ = jumped_ || effect.jumps;
   return effect;
 }
 

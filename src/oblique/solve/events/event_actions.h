@@ -32,6 +32,7 @@ class EventActions {
   /// A new instant: no event has come at it yet.
   void begin_instant() {
     came_.assign(came_.size(), false);
+    jumped_ = false;
     uncertain_.begin_instant();
   }
   /// Which switches have turned over at this instant: see UncertainReadings.
@@ -80,6 +81,7 @@ class EventActions {
   const std::string& file_;
   std::vector<bool> held_;  ///< see `conditions`
   std::vector<bool> came_;  ///< of each event that sets states: whether it came at this instant
+  bool jumped_ = false;     ///< whether states have at this instant, by what events set
   std::vector<EventPace> paces_;
   UncertainReadings uncertain_;
   std::vector<double> signals_;
