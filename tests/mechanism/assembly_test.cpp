@@ -94,6 +94,33 @@ TEST(AssemblyMode, IsNotChosenAtADeadCentre) {
   EXPECT_THAT(text, HasSubstr("dyad 'AC-CD' is at a dead centre at the start"));
 }
 
+// Rods of √5, 2 and √5 that meet in (2, 4) carry a bar from (1, 2) to (3, 2): by symmetry it can turn about
+// that point to first order, so two modes meet. Below the line of pivots it is a dead centre too, and a
+// third.
+TEST(AssemblyMode, IsNotChosenAtADeadCentreBesideOtherModes) {
+  const auto [kind, text] = refusal(R"toml(format = "oblique-mechanism/1"
+[frame]
+O = [-0.3, 0]
+G2 = [2, 0]
+G3 = [4, 0]
+[bodies]
+crank = { points = ["O", "A"], length = 0.3 }
+leg1 = { points = ["A", "P1"], length = "sqrt(5)" }
+leg2 = { points = ["G2", "P2"], length = 2 }
+leg3 = { points = ["G3", "P3"], length = "sqrt(5)" }
+plat = { points = ["P1", "P2"], length = 1, marks = { P3 = [2, 0] } }
+[drives]
+crank = { turns = "crank", about = "O", speed = 1 }
+[sketch]
+P1 = [1, 2]
+P2 = [2, 2]
+)toml");
+  EXPECT_EQ(kind, MechanismError::Kind::sketch);
+  EXPECT_THAT(text, HasSubstr("group 'leg1-leg2-leg3-plat' is at a dead centre at the start: two of its "
+                              "assembly modes coincide"));
+  EXPECT_THAT(text, HasSubstr("start the drive at another place and sketch that position"));
+}
+
 TEST(AssemblyMode, OfLinksThatDoNotReachIsAnAssemblyError) {
   const auto [kind, text] = refusal(truss("C = [3, 1]", 7.5));
   EXPECT_EQ(kind, MechanismError::Kind::assembly);

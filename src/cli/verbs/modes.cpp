@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
@@ -24,7 +26,12 @@ ExitStatus show_modes(const Session&, const ModesRequest& request) {
         structure.groups[g].name));
   }
   if (!position.open) return ExitStatus::done;
-  note("the mechanism cannot be assembled there\n");
+  const bool any_closes =
+      std::all_of(position.groups.begin(), position.groups.end(), [&](const mechanism::GroupModes& group) {
+        return structure.groups[group.group].assur_class < 2 || !group.modes.empty();
+      });
+  note(any_closes ? "the mechanism does not come there from its start: it can only be assembled there anew\n"
+                  : "the mechanism cannot be assembled there\n");
   return ExitStatus::no;
 }
 

@@ -205,15 +205,17 @@ class ModeChooser {
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return far[a] < far[b]; });
-    if (all.front().status == Status::dead_centre && all.size() == 1) {
+    const double same = kUndecidedWithin * mechanism_.largest_length();
+    const bool decided = all.size() == 1 || (sketched && far[order[1]] - far[order[0]] > same);
+    if (decided && all[order[0]].status == Status::dead_centre) {
       add(MechanismError::Kind::sketch, group,
-          fmt::format("{} '{}' is at a dead centre at the start: its assembly modes coincide{}", noun(group),
-                      group.name, shaky_text(all.front().configuration)),
-          {}, "start the drive at another angle and sketch that position");
+          fmt::format("{} '{}' is at a dead centre at the start: {} assembly modes coincide{}", noun(group),
+                      group.name, all.size() == 1 ? "its" : "two of its",
+                      shaky_text(all[order[0]].configuration)),
+          {}, "start the drive at another place and sketch that position");
       return std::nullopt;
     }
-    const double same = kUndecidedWithin * mechanism_.largest_length();
-    if (sketched && far[order[1]] - far[order[0]] > same) return order[0];
+    if (decided) return order[0];
     std::string lines;
     for (const Candidate& candidate : all) lines += "\n    " + sketch_line(group, candidate, all);
     const std::string modes =
