@@ -73,6 +73,27 @@ y = { type = "integrator", in = "x" }
   EXPECT_NEAR(row_values(result, "y").back(), 100 * 0.00125, 1e-7);
 }
 
+// What a straight line of the time between two edges passes is known to the rounding of the time, which times
+// its slope is more than that of what is compared: where it was found it had not passed yet, and was found
+// again without end. From t = 0.80083 on, the last of six samples in 0.961, the line rises from 0 to 1/2 in a
+// sixth of that, and passes 0.05/2 after a twentieth.
+TEST(Clocks, WhatALineBetweenTwoOfTheirEdgesPassesIsPassedOnce) {
+  const Compiled made(R"toml(
+u = { type = "constant", value = 0.5 }
+d = { type = "delay-line", in = "u", delay = 0.961, stages = 6, straight = 1 }
+c = { type = "comparator", in = ["2*d"], hysteresis = 0.1 }
+x = { type = "integrator", in = ["u"] }
+)toml");
+  const auto result = run_of(made, {.until = 3});
+  std::vector<double> turns;
+  for (const EventRecord& event : result.events) {
+    if (event.what.starts_with("c: ")) turns.push_back(event.time);
+  }
+  ASSERT_EQ(turns.size(), 1);
+  EXPECT_NEAR(turns[0], 0.961 / 6 * 5.05, 1e-12);
+  EXPECT_EQ(row_values(result, "c").back(), 1);
+}
+
 // A play between gears that drives itself through a delay line comes to rest at the edge of its play: the
 // sample of t = 0.78125 leads from there into the play, where nothing moves, and the step goes on beyond it.
 // That the sample has come, and the play not yet been left, is no state of which the step may be read: y was

@@ -79,16 +79,21 @@ std::optional<EventSearch::Found> EventLocation::search(double from, std::span<c
 void EventLocation::withdraw_early(double t) {
   due_.clear();
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    const auto rate = event_functions_.known_rate(s);
-    if (!rate) continue;
-    if (std::abs(event_functions_[s]) > 8 * time_resolution(t) * std::abs(*rate)) announced_[s].reset();
+    if (!event_functions_.known_rate(s)) continue;
+    if (!is_due(s, t)) announced_[s].reset();
     if (announced_[s]) due_.push_back(s);
   }
 }
 
-void EventLocation::withdraw_past(bool all) {
+/// Whether what follows the time alone is as near to zero as the time shows.
+bool EventLocation::is_due(std::size_t s, double t) const {
+  const auto rate = event_functions_.known_rate(s);
+  return rate && std::abs(event_functions_[s]) <= 8 * time_resolution(t) * std::abs(*rate);
+}
+
+void EventLocation::withdraw_past(double t, bool all) {
   for (std::size_t s = 0; s < announced_.size(); ++s) {
-    if (all || event_functions_.is_off_zero(s)) announced_[s].reset();
+    if ((all || event_functions_.is_off_zero(s)) && !is_due(s, t)) announced_[s].reset();
   }
 }
 

@@ -44,11 +44,14 @@ class EventLocation {
   /// due yet at t, where the event functions were evaluated last: the segment may have ended before their
   /// time.
   void withdraw_early(double t);
-  /// Withdraws switches whose event functions have moved away from zero; or all.
-  void withdraw_past(bool all);
+  /// Withdraws switches whose event functions have moved away from zero at t; or all, but for those that
+  /// follow the time alone, of which no jump of states takes one back.
+  void withdraw_past(double t, bool all);
   void withdraw_all() { announced_.assign(announced_.size(), std::nullopt); }
 
  private:
+  bool is_due(std::size_t s, double t) const;
+
   const network::Program& program_;
   const network::Workspace& workspace_;
   EventFunctions& event_functions_;

@@ -122,7 +122,7 @@ std::optional<EventActions::Effect> Switching::serve_events(double t, std::vecto
   settling_.begin_after_events(effect->sets_states, effect->jumps);
   event_functions_.evaluate(t, x, location_.announced());
   if (effect->jumps) event_functions_.take_slack_since(before);
-  location_.withdraw_past(effect->jumps);
+  location_.withdraw_past(t, effect->jumps);
   return effect;
 }
 
