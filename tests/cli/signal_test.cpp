@@ -140,6 +140,7 @@ TEST_F(Signalled, AskFirstWhereTheRunIsSavedAndThenEndIt) {
   ASSERT_EQ(pipe(said.data()), 0);
   const pid_t child = fork();
   if (child == 0) {
+    std::signal(SIGINT, SIG_DFL);  // who runs the tests in the background has it ignored
     dup2(said[1], STDERR_FILENO);
     text::Leftover part;
     part.remember((folder_ / "work/part").native());

@@ -2,6 +2,7 @@
 #include <oblique/mechanism/analysis/analysis.h>
 #include <oblique/mechanism/structure/structure.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -59,6 +60,43 @@ TEST(MotionRange, HasSmoothPlacesUpToItsLimits) {
       }
     }
   }
+}
+
+// A parallelogram A-B-C-D that a crank about H moves by a coupler to F of BC: F goes round (20, 30) as B
+// round A, so that they are a four-bar. Where the parallelogram lies flat, at 132.87°, its modes meet and it
+// goes on. Its determinant is at most 0.07 before that, so it is a dead centre, where nothing has a rate, for
+// a longer way than of other triads: the motion was lost there, and what came after was left out without a
+// word.
+TEST(Swings, OfATriadGoOnBeyondAFlatParallelogram) {
+  const MechanismAnalysis analysis = analysis_of(parse_mechanism(R"toml(format = "oblique-mechanism/1"
+[units]
+length = "mm"
+[frame]
+A = [0, 0]
+D = [80, 0]
+H = [150, 60]
+[bodies]
+HG = { points = ["H", "G"], length = 30 }
+FG = { points = ["F", "G"], length = 82.9113732680986 }
+BC = { points = ["B", "C"], length = 80, marks = { F = [20, 30] } }
+AB = { points = ["A", "B"], length = 45 }
+DC = { points = ["D", "C"], length = 45 }
+[drives]
+crank = { turns = "HG", about = "H", speed = "1 rad/s", start = "120 deg" }
+[sketch]
+G = [134.99531, 85.979541]
+F = [60.77697, 49.01577]
+B = [40.776468, 19.015017]
+C = [120.77848, 19.015017]
+)toml",
+                                                                 "flat.toml"));
+  const auto ab = std::find_if(analysis.swings.begin(), analysis.swings.end(),
+                               [](const Sweep& swing) { return !swing.is_slide && swing.index == 3; });
+  ASSERT_NE(ab, analysis.swings.end());
+  // Least where crank and coupler lie on one line, stretched.
+  const double ground = std::hypot(130, 30);
+  const double least = std::atan2(30, 130) - angle_opposite(82.9113732680986 + 30, ground, 45);
+  EXPECT_NEAR(ab->least.value, least, kExact);
 }
 
 TEST(Transmission, IsPoorBeyondWhatTextbooksAllow) {

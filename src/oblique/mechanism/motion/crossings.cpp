@@ -260,8 +260,9 @@ Crossing step_towards(BranchWalk& walk, double t) {
   for (std::size_t g = 0; g < walk.courses.size(); ++g) {
     const BranchWalk::Course& course = walk.courses[g];
     const bool falls = course.derivative * course.determinant * direction < 0;
+    const double dead_centre = walk.kinematics.solver(g).is_tracked() ? kMeeting : 0;
     Crossing crossing = Crossing::regular;
-    if (falls && std::abs(course.determinant) < kSingular * course.peak) {
+    if (falls && std::abs(course.determinant) < std::max(kSingular * course.peak, 2 * dead_centre)) {
       crossing = cross_at(walk, g, t, false);
     } else if (const GroupSolver& solver = walk.kinematics.solver(g);
                solver.is_tracked() && solver.distance(walk.here) > kFar) {

@@ -176,8 +176,6 @@ Status GroupSolver::finish(std::span<const DriveState> drives, Configuration& he
     }
   };
   apply(false);
-  // Two modes that meet do so like square roots of the rounding.
-  constexpr double kMeeting = 1e-7;
   is_dead_centre = is_dead_centre || !(std::abs(determinant_) > (is_tracked() ? kMeeting : 0));
   apply(true);
   if (is_dead_centre) {

@@ -16,6 +16,10 @@
 
 namespace oblique::mechanism {
 
+/// A group that Newton's method places is at a dead centre where its normalised determinant is smaller: two
+/// modes that meet do so like square roots of the rounding.
+inline constexpr double kMeeting = 1e-7;
+
 /// Puts one group together whose known elements stand in a configuration. It keeps scratch memory, so one
 /// object serves one thread; after construction nothing allocates but `poses`.
 ///
