@@ -229,6 +229,34 @@ TEST_F(Verbs, ModesAreThoseWhereTheDriveIsAskedToStand) {
   }
 }
 
+// A triad with a parallelogram, whose branch from the start ends before a quarter turn of the crank, closes
+// there in four others.
+TEST_F(Verbs, ModesSaysThatAPositionIsNotReachedFromTheStart) {
+  std::ofstream(file("m.toml")) << R"toml(format = "oblique-mechanism/1"
+[frame]
+O = [-0.2, 0]
+G2 = [3, 0]
+G3 = [5, 0]
+[bodies]
+crank = { points = ["O", "A"], length = 0.2 }
+leg1 = { points = ["A", "P1"], length = 2.785677655436824 }
+leg2 = { points = ["G2", "P2"], length = 1.6552945357246849 }
+leg3 = { points = ["G3", "P3"], length = 1.6552945357246849 }
+plat = { points = ["P2", "P3"], length = 2, marks = { P1 = [-2.7, 1.1] } }
+[drives]
+crank = { turns = "crank", about = "O", speed = "1 rad/s" }
+[sketch]
+P1 = [1, 2.6]
+P2 = [3.7, 1.5]
+P3 = [5.7, 1.5]
+)toml";
+  const Outcome outcome = oblique("modes " + file("m.toml") + " --at '90 deg'");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("(class 3): 4 modes"));
+  EXPECT_EQ(outcome.err,
+            "the mechanism does not come there from its start: it can only be assembled there anew\n");
+}
+
 /// A command that prints JSON, or writes $SCRATCH/x.json.
 struct JsonCall {
   std::string name, arguments;

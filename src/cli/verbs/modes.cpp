@@ -26,12 +26,12 @@ ExitStatus show_modes(const Session&, const ModesRequest& request) {
         structure.groups[g].name));
   }
   if (!position.open) return ExitStatus::done;
-  const bool any_closes =
+  const bool all_close =
       std::all_of(position.groups.begin(), position.groups.end(), [&](const mechanism::GroupModes& group) {
         return structure.groups[group.group].assur_class < 2 || !group.modes.empty();
       });
-  note(any_closes ? "the mechanism does not come there from its start: it can only be assembled there anew\n"
-                  : "the mechanism cannot be assembled there\n");
+  note(all_close ? "the mechanism does not come there from its start: it can only be assembled there anew\n"
+                 : "the mechanism cannot be assembled there\n");
   return ExitStatus::no;
 }
 

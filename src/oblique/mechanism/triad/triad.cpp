@@ -209,8 +209,8 @@ void Triad::visit(Complex z) {
   const auto [shorter, longer] = std::minmax({modulus(u[0]), modulus(u[1])});
   if (longer < kShort) {
     visit_parallel(z);
-  } else if (!cross_well ||
-             shorter < kShort) {  // a parallelogram holds z alone, and both crossings are modes
+  } else if (!cross_well || shorter < kShort) {
+    // a parallelogram holds z alone, and both crossings are modes
     visit_crossing(modulus(u[0]) > modulus(u[1]) ? lines_[0] : lines_[1], z);
   }
 }
