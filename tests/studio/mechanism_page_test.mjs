@@ -283,6 +283,7 @@ test("class III swings where its outer loop is made fast: in the eigenvalues and
   await page.select('select[aria-label="Split of the triad"]', "O1C, DE, AB");
   await page.waitForFunction(() => /EC/.test(document.querySelector(".loops-panel .verdict")?.textContent ?? ""), patience);
   const slower = async (times) => {
+    await page.waitForSelector(".slower", patience);  // for it is not there while another machine is made
     await page.$eval(".slower", (input, set) => {
       input.value = String(set);
       input.dispatchEvent(new Event("change", {bubbles: true}));

@@ -7,7 +7,6 @@ import {cpSync, existsSync, readdirSync, readFileSync, renameSync, rmSync, write
 import {createRequire} from "node:module";
 import {basename, dirname, join, relative, resolve} from "node:path";
 import {fileURLToPath, pathToFileURL} from "node:url";
-import {gzipSync} from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const folder = process.argv[2];
@@ -46,7 +45,11 @@ const opening = examples.find(({name}) => name === "mechanisms/class-iii.toml");
 const inside = (text) => text.replaceAll("</", "<\\/").replaceAll("<!--", "<\\!--");
 const json = (value) => JSON.stringify(value).replaceAll("<", "\\u003c");
 
-const packed = (content) => gzipSync(content, {level: 9}).toString("base64");
+function packed(content) {
+  const file = join(stage, "to-pack");
+  writeFileSync(file, content);
+  return run("zopfli", ["-c", "--i5", file], {encoding: "buffer"}).toString("base64");
+}
 
 const worker = bundle("worker.ts", "--format=iife", `--alias:engine=${join(built, "engine.mjs")}`, `--alias:engine-glue=${join(built, "engine.js")}`,
   "--external:fs", "--external:path", "--external:crypto");
