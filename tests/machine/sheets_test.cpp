@@ -192,6 +192,25 @@ a = { type = "servo-amplifier", in = ["x", "a"], gain = 1e5, bandwidth = 20 }
                                  "open amplifier, gain 1e+05, bandwidth 20 Hz"));
 }
 
+// What stays as it is on a machine has to be set there: voltages in volts, the rest as the block says.
+TEST(Sheets, SayAllThatIsSetAtLogicAndDelays) {
+  const diagram::FlatDiagram flat = diagram::flatten(diagram::parse_diagram(testing::diagram_text(R"(
+x = { type = "integrator", in = ["m"] }
+m = { type = "monostable", trigger = "n.carry", length = 0.4, low = -0.2 }
+n = { type = "counter", clock = "x", modulus = 4, step = 0.25 }
+)"),
+                                                                            "d.toml"),
+                                                     shipped_blocks());
+  const Sheet test =
+      make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts())
+          .static_test;
+  EXPECT_THAT(test.rows, Contains(ElementsAre(
+                             "X1", "m", "monostable, length 0.4 s, retriggerable 0, low -2 V, high 10 V",
+                             "-2.0000", "")));
+  EXPECT_THAT(test.rows,
+              Contains(ElementsAre("X2", "n.out", "counter, modulus 4, step 2.5 V", "0.0000", "")));
+}
+
 TEST(Sheets, AreQuotedAsCsvWhereTheyHaveTo) {
   const Sheet sheet{"title", {"a", "b"}, {{"1, 2", "say \"x\""}, {"", "plain"}}};
   EXPECT_EQ(to_csv(sheet), "a,b\n\"1, 2\",\"say \"\"x\"\"\"\n,plain\n");

@@ -159,7 +159,8 @@ class SheetMaker {
   }
 
   /// "summer", "integrator, k0 = 500 1/s, limited to ±8 V", "open amplifier, gain 1e+06, bandwidth 10 Hz",
-  /// "comparator, 0 or 10 V, hysteresis 0.5 V": the kind, and what is set at the element itself.
+  /// "comparator, 0 or 10 V, hysteresis 0.5 V", "counter, modulus 4, step 5 V": the kind, and what is set at
+  /// the element itself.
   std::string kind_text(const diagram::FlatBlock& block) const {
     const std::string limit = own(block, "limit", ", limited to ±", volts_, unit_);
     switch (block.definition->role) {
@@ -177,9 +178,26 @@ class SheetMaker {
                            block.parameters[*high] * volts_, unit_) +
                own(block, "hysteresis", ", hysteresis ", volts_, unit_);
       }
+      case Role::other:
+        return block.definition->name + settings_text(block);
       default:
         return block.definition->name + limit;
     }
+  }
+
+  /// ", length 0.4 s, low −4 V, high 10 V": all that is set at an element that is what the diagram has.
+  std::string settings_text(const diagram::FlatBlock& block) const {
+    std::string text;
+    for (std::size_t k = 0; k < block.parameters.size(); ++k) {
+      const diagram::ParameterDefinition& parameter = block.definition->parameters[k];
+      if (parameter.points || parameter.formula || block.saturation == k) continue;
+      if (!std::isfinite(block.parameters[k])) continue;
+      const bool voltage = parameter.unit == "machine unit";
+      const std::string unit = voltage ? unit_ : parameter.unit == "1" ? "" : parameter.unit;
+      text += fmt::format(", {} {:.6g}{}{}", parameter.name, block.parameters[k] * (voltage ? volts_ : 1),
+                          unit.empty() ? "" : " ", unit);
+    }
+    return text;
   }
 
   /// A finite parameter that is not zero, and that is not the machine's saturation, behind some words.
