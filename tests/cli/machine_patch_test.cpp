@@ -308,20 +308,22 @@ TEST_F(PatchForMachine, TakesTheTimeScaleThatIsAskedFor) {
 }
 
 TEST_F(PatchForMachine, RefusesADiagramThatTheMachineHasNoElementsFor) {
-  write("counted.toml", std::string(kSpring).insert(std::string(kSpring).find("[outputs]"),
-                                                    "turns = { type = \"counter\", clock = \"x\" }\n") +
-                            "turns = \"turns.out\"\n");
-  const Outcome counter = oblique("patch counted.toml --machine tr-10 -o made.toml");
-  EXPECT_EQ(counter.status, 2);
-  EXPECT_THAT(counter.err,
-              HasSubstr("counted.toml:8:1: the machine EAI PACE TR-10 (1959) has no counter, which "
-                        "'turns' is, and no circuit of its elements for it"));
-  EXPECT_THAT(counter.err,
+  write("servo.toml",
+        std::string(kSpring).insert(std::string(kSpring).find("[outputs]"),
+                                    "moved = { type = \"servo-multiplier\", x = \"x\", y1 = \"x\" }\n") +
+            "moved = \"moved.out1\"\n");
+  const Outcome refused = oblique("patch servo.toml --machine tr-10 -o made.toml");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err,
+              HasSubstr("servo.toml:8:1: the machine EAI PACE TR-10 (1959) has no servo-multiplier, "
+                        "which 'moved' is, and no circuit of its elements for it"));
+  EXPECT_THAT(refused.err,
               HasSubstr("  remedy: build it of these; --force writes the diagram unscaled, with its own "
                         "blocks\n"));
-  const Outcome forced = oblique("patch counted.toml --machine tr-10 -o made.toml --force");
+  const Outcome forced = oblique("patch servo.toml --machine tr-10 -o made.toml --force");
   EXPECT_EQ(forced.status, 0) << forced.err;
-  EXPECT_THAT(forced.err, HasSubstr("warning: not scaled: the machine EAI PACE TR-10 (1959) has no counter"));
+  EXPECT_THAT(forced.err,
+              HasSubstr("warning: not scaled: the machine EAI PACE TR-10 (1959) has no servo-multiplier"));
 
   const Outcome product = oblique("patch " + std::string(OBLIQUE_SOURCE_DIR) +
                                   "/diagrams/historical/van-der-pol.toml --machine ec-1 -o other.toml");

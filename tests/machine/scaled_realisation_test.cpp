@@ -143,6 +143,38 @@ y = { type = "summer", in = ["5*y_of.out", "y_of.inverse"] })"},
         ElementCase{
             "pulses",
             R"(y = { type = "pulse-train", period = 0.7, width = 0.2, delay = 1.6, low = -2, high = 7 })"},
+        ElementCase{"backlash",
+                    R"(y = { type = "backlash", in = "u", play = 0.6, rate = 50, initial = -0.3 })"},
+        ElementCase{
+            "multiplexer",
+            R"(y = { type = "multiplexer", in0 = "u", in1 = "-2*v", in3 = "one", address = "0.9*u", step = 0.4 })"},
+        ElementCase{"demultiplexer",
+                    R"(y_of = { type = "demultiplexer", in = "3*v", address = "u", step = 0.4 }
+y = { type = "summer", in = ["y_of.out0", "2*y_of.out1", "-4*y_of.out2", "8*y_of.out7"] })"},
+        ElementCase{"counter", R"(up = { type = "comparator", in = "u" }
+slow = { type = "counter", clock = "fast.carry", step = 3 }
+fast = { type = "counter", clock = "up", modulus = 2, step = 0.5 }
+y = { type = "summer", in = ["slow.out", "fast.out", "0.1*fast.carry"] })"},
+        ElementCase{"preset_counter", R"(up = { type = "comparator", in = "u" }
+late = { type = "comparator", in = "v", low = -1 }
+y_of = { type = "preset-counter", clock = "up", preset = 3, step = 7, reload = 1, enable = "late" }
+y = { type = "summer", in = ["y_of.out", "5*y_of.zero"] })"},
+        ElementCase{"jk_flip_flop", R"(up = { type = "comparator", in = "u" }
+late = { type = "comparator", in = "v" }
+half = { type = "jk-flip-flop", clock = "up" }
+y_of = { type = "jk-flip-flop", clock = "half.inverse", k = "late", initial = 1 }
+y = { type = "multiplier", in = ["u", "y_of.out"] })"},
+        ElementCase{"monostable", R"(up = { type = "comparator", in = "u" }
+y = { type = "monostable", trigger = "up", length = 0.4, low = -2, high = 5 })"},
+        ElementCase{"digital_potentiometer", R"(up = { type = "comparator", in = "u" }
+y_of = { type = "digital-potentiometer", in = "5*v", up = "up", initial = 0.2, step = 0.3 }
+y = { type = "summer", in = ["y_of.out", "3*y_of.setting"] })"},
+        ElementCase{"noise",
+                    R"(y = { type = "noise-source", rms = 3, bandwidth = 0.8, mean = -1, seed = 7 })"},
+        ElementCase{"delay_line",
+                    R"(y = { type = "delay-line", in = "3*v", delay = 0.7, stages = 7, initial = -3 })"},
+        ElementCase{"straight_delay_line",
+                    R"(y = { type = "delay-line", in = "0.3*u", delay = 0.7, stages = 12, straight = 1 })"},
         // 200 lines over a turn: (∫√|cos| dx)²/(16·200²) = 3.6e-5 over four quarters, times r = 2
         ElementCase{"resolver", R"(y_of = { type = "resolver", length = "u", angle = "2*v" }
 y = { type = "summer", in = ["y_of.x", "y_of.y"] })",
@@ -277,14 +309,64 @@ TEST(ScaledRealisation, NamesEveryBlockThatTheMachineHasNot) {
               realise_scaled(parsed(R"toml([blocks]
 one = { type = "constant" }
 x = { type = "integrator", in = ["one"] }
-a = { type = "backlash", in = "x" }
-b = { type = "backlash", in = "x" }
-n = { type = "counter", clock = "x" }
+a = { type = "servo-multiplier", x = "x", y1 = "one" }
+b = { type = "servo-multiplier", x = "x", y1 = "one" }
+n = { type = "servo-resolver", angle = "x" }
 )toml"),
                              shipped_blocks(), desk_machine());
             }),
-            "test.toml:5:1: the machine Machine has no backlash, which 'a', 'b' are" + remedy +
-                "\ntest.toml:7:1: the machine Machine has no counter, which 'n' is" + remedy);
+            "test.toml:5:1: the machine Machine has no servo-multiplier, which 'a', 'b' are" + remedy +
+                "\ntest.toml:7:1: the machine Machine has no servo-resolver, which 'n' is" + remedy);
+}
+
+// The clock of a counter keeps its level, 0.5, in every scale: what it is fed with could not be brought onto
+// the machine.
+TEST(ScaledRealisation, NamesAControlThatNoScaleBringsOntoTheMachine) {
+  const std::string remedy =
+      "; expected a level of 0 or 1, as a comparator gives it\n  remedy: put a comparator before it";
+  EXPECT_EQ(
+      testing::message_of<RealiseError>([] {
+        realise_scaled(parsed(R"toml([blocks]
+x = { type = "integrator", in = ["y"], initial = 3 }
+y = { type = "integrator", in = ["-x"] }
+xy = { type = "multiplier", in = ["x", "y"] }
+n = { type = "counter", clock = "x" }
+m = { type = "counter", clock = "xy" }
+)toml"),
+                       shipped_blocks(), desk_machine());
+      }),
+      "test.toml:6:1: 'clock' of 'n' is compared with a level that no scale moves, and 'x', which it is fed "
+      "with, goes to 3 machine units" +
+          remedy +
+          "\ntest.toml:7:1: 'clock' of 'm' is compared with a level that no scale moves, and 'xy', which it "
+          "is fed with, is a product, whose scale is that of its factors" +
+          remedy);
+}
+
+// A count of 14 is 28 units of the diagram, and less than one of the machine; the carry is a level in both.
+TEST(ScaledRealisation, BringsACountOntoTheMachineAndLeavesItsCarry) {
+  const ScaledRealisation made = realise_scaled(parsed(R"toml(
+[run]
+until = 14.5
+[blocks]
+clock = { type = "pulse-train", period = 1, width = 0.5, delay = 0.75 }
+n = { type = "counter", clock = "clock", step = 2, modulus = 20 }
+[outputs]
+count = "n.out"
+carry = "n.carry"
+)toml"),
+                                                shipped_blocks(), desk_machine());
+  const diagram::FlatDiagram flat = diagram::flatten(made.diagram, shipped_blocks());
+  const auto counter = std::find_if(flat.blocks.begin(), flat.blocks.end(),
+                                    [](const auto& block) { return block.definition->name == "counter"; });
+  ASSERT_NE(counter, flat.blocks.end());
+  const double step = counter->parameters[counter->definition->find_parameter("step").value()];
+  EXPECT_LE(14 * step, 1 + 1e-6);
+  EXPECT_GT(14 * step, 0.9);  // a factor of two digits uses more than nine tenths
+  const solve::Trajectory run = trajectory_of(made.diagram);
+  EXPECT_NEAR(run.at(run.rows() - 1, 1), 28, 1e-9);
+  EXPECT_EQ(run.at(run.rows() - 1, 2), 0);
+  EXPECT_EQ(run.at(0, 2), 1);
 }
 
 // A circular orbit, r″ = 1/r³ − 1/r² from r = 1: what is left of r′ is what the amplifier of the divider does

@@ -85,9 +85,9 @@ std::string refusal(const std::string& block) {
 
 // Noise is a function of time, and no ten lines are noise.
 TEST(TabulatedFunctions, RefusesAFunctionThatItsLinesMiss) {
-  EXPECT_THAT(refusal("n = { type = \"noise-source\", bandwidth = \"100 Hz\" }\n"),
+  EXPECT_THAT(refusal("n = { type = \"time-function\", formula = \"noise(500*time, 1)\" }\n"),
               ::testing::ContainsRegex(
-                  "test.toml:5:1: 10 straight lines miss 'n' \\(noise-source\\) by [0-9.]+, which "
+                  "test.toml:5:1: 10 straight lines miss 'n' \\(time-function\\) by [0-9.]+, which "
                   "itself goes from -[0-9.]+ to [0-9.]+; expected a function that a function "
                   "generator can be set for"));
 }

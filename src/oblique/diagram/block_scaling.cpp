@@ -247,8 +247,11 @@ BlockScaling BlockScalingRules::whole(double factor) const {
   return scaling_of(std::log(factor) * whole_);
 }
 
-BlockScaling BlockScalingRules::from_inputs(std::span<const double> inputs) const {
+BlockScaling BlockScalingRules::from_inputs(std::span<const double> inputs, double free) const {
   Eigen::VectorXd logarithms = Eigen::VectorXd::Zero(columns_);
+  for (const Eigen::Index parameter : parameters_) {
+    if (parameter >= 0) logarithms[parameter] = std::log(free);
+  }
   for (std::size_t i = 0; i < inputs.size(); ++i) logarithms[inputs_[i]] = std::log(inputs[i]);
   for (Eigen::Index r = 0; r < equations_.rows(); ++r) {
     Eigen::Index pivot = 0;

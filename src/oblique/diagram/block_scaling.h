@@ -33,8 +33,9 @@ class BlockScalingRules {
   BlockScaling whole(double factor) const;
 
   /// The factors of the outputs that follow from those of the inputs; a factor for an input that the rules do
-  /// not leave free is replaced by the one they ask for. Without free inputs all are 1.
-  BlockScaling from_inputs(std::span<const double> inputs) const;
+  /// not leave free is replaced by the one they ask for. Parameters in machine units that do not follow from
+  /// the inputs have `free`.
+  BlockScaling from_inputs(std::span<const double> inputs, double free = 1) const;
 
  private:
   friend class RuleReader;

@@ -30,6 +30,8 @@ constexpr std::array kElements{
                  "electronic_switch"},
     ElementWords{ElementKind::counter, "counter", "counters", "counter"},
     ElementWords{ElementKind::flip_flop, "flip-flop", "flip-flops", "flip_flop"},
+    ElementWords{ElementKind::monostable, "monostable", "monostables", "monostable"},
+    ElementWords{ElementKind::noise_generator, "noise generator", "noise generators", "noise_generator"},
     ElementWords{ElementKind::diode, "diode", "diodes", "diode"},
 };
 

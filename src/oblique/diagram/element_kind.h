@@ -25,6 +25,8 @@ enum class ElementKind {
   electronic_switch,
   counter,
   flip_flop,
+  monostable,
+  noise_generator,
   diode,
 };
 

@@ -213,6 +213,7 @@ class Reducer {
       element.definition = &element_block(library_, Role::multiplier);
       check_parameters(block, *element.definition);
     }
+    if (element.role == Role::other) element.logic = logic_ports(block);
     blocks_[index].state = State::kept;
     blocks_[index].value = {1, add(std::move(element), index)};
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <oblique/diagram/flat_diagram.h>
+#include <oblique/machine/logic_ports.h>
 #include <oblique/machine/role.h>
 
 namespace oblique::machine {
@@ -31,6 +32,7 @@ struct CircuitElement {
   const diagram::BlockDefinition* definition;  ///< what it is now: of a gain on a loop that of the summer
   double polarity = 1;                         ///< of the equation as the diagram means it
   std::vector<CircuitInput> inputs;            ///< in the order of the definition
+  std::optional<LogicPorts> logic;             ///< of a block without a role that stays as it is
 };
 
 /// A diagram in active elements and weighted connections, with no machine in mind.

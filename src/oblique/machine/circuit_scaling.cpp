@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/block_scaling.h>
 #include <oblique/diagram/propose_scaling.h>
+#include <oblique/machine/fixed_levels.h>
 #include <oblique/machine/input_weight.h>
 #include <oblique/machine/role.h>
 #include <oblique/text/nearest_decimal.h>
@@ -36,20 +37,20 @@ double rate_of(const CircuitElement& element) {
   return std::abs(parameter_of(*element.block, "rate"));
 }
 
-/// Whether an input is compared with a level that no factor moves.
-bool has_fixed_level(const CircuitElement& element, std::size_t port) {
-  return element.role == Role::integrator && !element.definition->inputs[port].sum &&
-         element.definition->inputs[port].name != "start";
+/// The factor of what a term carries, where the elements have these.
+double factor_of(const CircuitTerm& term, const std::vector<CircuitElement>& elements,
+                 const std::vector<double>& factors) {
+  return term.signal && !has_fixed_level(elements, *term.signal) ? factors[term.signal->block] : 1;
 }
 
 /// The largest weight of a residual in the scale of the machine, its amplifier's output being scaled by
 /// `out`.
-double largest_weight(const CircuitElement& element, double out, const std::vector<double>& factors) {
+double largest_weight(const CircuitElement& element, double out, const std::vector<CircuitElement>& elements,
+                      const std::vector<double>& factors) {
   double largest = 0;
   for (const CircuitInput& input : element.inputs) {
     for (const CircuitTerm& term : input.terms)
-      largest =
-          std::max(largest, std::abs(term.weight) * out / (term.signal ? factors[term.signal->block] : 1));
+      largest = std::max(largest, std::abs(term.weight) * out / factor_of(term, elements, factors));
   }
   return largest;
 }
@@ -80,7 +81,9 @@ class Chooser {
       for (std::size_t port = 0; port < element.inputs.size(); ++port) {
         if (!has_fixed_level(element, port)) continue;
         for (const CircuitTerm& term : element.inputs[port].terms) {
-          if (term.signal && !is_product(elements_[term.signal->block].role)) pin(term.signal->block);
+          if (term.signal && !is_product(elements_[term.signal->block].role) &&
+              !has_fixed_level(elements_, *term.signal))
+            pin(term.signal->block);
         }
       }
     }
@@ -103,7 +106,8 @@ class Chooser {
   double start_of(std::size_t e) const {
     const CircuitElement& element = elements_[e];
     if (element.role == Role::comparator) return largest_factor(level_of(e));
-    if (!is_free(element.role)) return 1;
+    if (element.logic && !element.logic->scales) return 1;
+    if (!is_free(element.role) && !element.logic) return 1;
     // What is left of terms that cancel is rounding, errors of the run and what servo amplifiers of a gain of
     // a million leave over, whatever the units.
     constexpr double kNothing = 1e-7;
@@ -128,7 +132,8 @@ class Chooser {
   /// How far its inputs could drive a summer, or an integrator until the end of the run; 0 for other
   /// elements.
   double reach_of(const CircuitElement& element) const {
-    if (element.role == Role::open_amplifier || element.role == Role::function_generator) return 0;
+    if (element.role == Role::open_amplifier || element.role == Role::function_generator || element.logic)
+      return 0;
     double reach = 0;
     for (std::size_t port = 0; port < element.inputs.size(); ++port) {
       const bool integrated = element.role == Role::integrator && element.definition->inputs[port].sum;
@@ -146,7 +151,7 @@ class Chooser {
     const CircuitElement& element = elements_[e];
     if (element.role != Role::open_amplifier || !element.definition->find_parameter("gain"))
       return factors_[e];
-    const double largest = largest_weight(element, factors_[e], factors_);
+    const double largest = largest_weight(element, factors_[e], elements_, factors_);
     if (!std::isnormal(largest)) return factors_[e];
     return factors_[e] * std::clamp(largest, 1.0, std::max(1.0, greatest_gain())) / largest;
   }
@@ -156,9 +161,7 @@ class Chooser {
     factors_[e] = 1;
   }
 
-  double source_factor(const CircuitTerm& term) const {
-    return term.signal ? factors_[term.signal->block] : 1;
-  }
+  double source_factor(const CircuitTerm& term) const { return factor_of(term, elements_, factors_); }
 
   /// Lowers the factor of a summer, or takes that of a multiplier from its inputs; whether it has changed.
   bool relax(std::size_t e) {
@@ -174,6 +177,7 @@ class Chooser {
       for (std::size_t port = 0; port < element.inputs.size(); ++port) {
         const bool sum = element.definition->inputs[port].sum;
         if (sum && element.role != Role::summer) continue;
+        if (element.logic && element.logic->inputs[port]) continue;
         for (const CircuitTerm& term : element.inputs[port].terms)
           factor =
               std::min(factor, (sum ? greatest_gain() : 1) * source_factor(term) / std::abs(term.weight));
@@ -263,7 +267,7 @@ class Scaler {
 
  private:
   double source_factor(const CircuitTerm& term) const {
-    return term.signal ? scaling_.signals[term.signal->block] : 1;
+    return factor_of(term, circuit_.elements, scaling_.signals);
   }
 
   void scale(std::size_t e) {

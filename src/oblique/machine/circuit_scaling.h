@@ -29,7 +29,8 @@ struct CircuitScaling {
 /// - The residual of an open amplifier is scaled so that its largest weight lies between 1 and the greatest
 ///   gain, and the gain of the amplifier with it.
 /// - A multiplier is fed by weights of ±1, and has the product of the factors there.
-/// - What is compared with a fixed level keeps its signals: the input `set` of an integrator.
+/// - What is compared with a fixed level keeps its signals: the input `set` of an integrator, the clock of a
+///   counter; and so do levels that come out. What else a block without a role carries has one factor.
 /// - `time`, unless given, is the 1-2-5 step next to 1 with which no integrator needs an input weighted more
 ///   than the greatest gain at the greatest time factor, potentiometers before integrators are as far as may
 ///   be set to a tenth or more, and integrators are slow beside the bandwidth of their amplifiers.

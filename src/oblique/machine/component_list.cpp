@@ -145,6 +145,8 @@ class Counter {
       case diagram::ElementKind::electronic_switch:
       case diagram::ElementKind::counter:
       case diagram::ElementKind::flip_flop:
+      case diagram::ElementKind::monostable:
+      case diagram::ElementKind::noise_generator:
       case diagram::ElementKind::diode:
         break;
     }

@@ -18,6 +18,7 @@
 #include <oblique/machine/circuit_scaling.h>
 #include <oblique/machine/element_library.h>
 #include <oblique/machine/element_writer.h>
+#include <oblique/machine/fixed_levels.h>
 #include <oblique/machine/mode_control.h>
 #include <oblique/machine/signal_ranges.h>
 #include <oblique/machine/tabulated_functions.h>
@@ -32,11 +33,12 @@ diagram::MachineProfile without_errors(diagram::MachineProfile machine) {
   return machine;
 }
 
-/// Elements without a role that are still there have no place on any machine.
+/// Elements without a role that are still there, and do not say what they take of a machine's, have no place
+/// on any.
 void check_elements(const Circuit& circuit, const diagram::MachineProfile& machine) {
   std::map<std::string, std::vector<const CircuitElement*>> others;  // by the names of their blocks
   for (const CircuitElement& element : circuit.elements) {
-    if (element.role == Role::other) others[element.definition->name].push_back(&element);
+    if (element.role == Role::other && !element.logic) others[element.definition->name].push_back(&element);
   }
   text::Diagnostics diagnostics;
   for (const auto& [block, elements] : others) {
@@ -125,6 +127,7 @@ class MachineScaling::State {
       }
     }();
     for (const std::string& element : unscaled.elements) peaks_.push_back(peaks.at(element));
+    check_levels(circuit_, peaks_);
     ideal_peaks_ = peaks_;
   }
 

@@ -11,6 +11,7 @@
 
 #include <oblique/diagram/names.h>
 #include <oblique/machine/line_segments.h>
+#include <oblique/machine/logic_ports.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/role.h>
 
@@ -128,7 +129,10 @@ class Tabulator {
     for (std::size_t b = 0; b < n; ++b) {
       if (flat_.blocks[b].definition->role != Role::other) continue;
       FunctionReader function(flat_.blocks[b]);
-      if (function.is_function()) replace(b, function);
+      if (!function.is_function()) continue;
+      // A noise generator is a function of the time, and an element.
+      if (!function.input() && logic_ports(flat_.blocks[b])) continue;
+      replace(b, function);
     }
     diagnostics_.throw_if_any<RealiseError>();
     return std::move(functions_);
