@@ -190,7 +190,7 @@ class Counter {
   }
 
   void add_named(diagram::ElementKind kind, std::string element, std::vector<std::string> blocks) {
-    double needed = static_cast<double>(blocks.size());
+    auto needed = static_cast<double>(blocks.size());
     if (const auto others = needs_.find(kind); others != needs_.end()) {
       needed += others->second.count;
       blocks.insert(blocks.end(), others->second.blocks.begin(), others->second.blocks.end());
