@@ -16,6 +16,7 @@
 #include <oblique/machine/input_weight.h>
 #include <oblique/machine/mode_control.h>
 #include <oblique/text/expression_printer.h>
+#include <oblique/text/nearest_decimal.h>
 
 namespace oblique::machine {
 
@@ -143,11 +144,13 @@ class Writer {
 
   const std::string& potentiometer(const std::string& from, double setting) {
     // Settings that differ by less are the same position of the wiper.
+    constexpr int kSettingDigits = 14;  // 1.962/10 comes out as 0.1962
     std::string& name = potentiometers_[{from, fmt::format("{:.12g}", setting)}];
     if (name.empty()) {
       name = signals_.free_name(fmt::format("pot_{}", potentiometers_.size()));
       add_block(name, Role::potentiometer,
-                {diagram::wire_setting("in", {{1, from}}), diagram::number_setting("setting", setting)});
+                {diagram::wire_setting("in", {{1, from}}),
+                 diagram::number_setting("setting", text::nearest_decimal(setting, kSettingDigits))});
     }
     return name;
   }

@@ -106,8 +106,8 @@ void check_start(const diagram::FlatDiagram& flat, const diagram::FlatBlock& sto
   const bool tracks = value(store.inputs[1]) > 0.5;
   if (tracks && parameter_of(store, "acquisition_time") == 0) return;
   const double starts = tracks ? 0 : in;
-  constexpr double kRounding = 1e-9;
-  if (std::abs(starts - initial) <= kRounding * std::max(std::abs(in), std::abs(initial))) return;
+  constexpr double kEqual = 1e-9;
+  if (std::abs(starts - initial) <= kEqual * std::max(std::abs(in), std::abs(initial))) return;
   throw RealiseError(text::Diagnostic{
       store.place,
       fmt::format("'{}' starts at {:.6g}, and an integrator that {} would start at {:.6g}", store.path,
