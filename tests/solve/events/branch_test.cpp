@@ -292,6 +292,25 @@ y = { type = "servo-amplifier", in = ["-xy", "p"], initial = 1, gain = inf, band
       "another 'initial', or a finite gain and bandwidth to see what a machine does");
 }
 
+// y + x = 0 by a sum that falls with y: solved, and no amplifier would hold it. By one that rises it is held.
+TEST(Branch, OfALinearLoopOnWhichItsAmplifierDoesNotRestIsWarnedOf) {
+  for (const std::string amplifier : {"gain = 1000", "gain = inf", "gain = 1000, limit = 1"}) {
+    for (const double sign : {1.0, -1.0}) {
+      const auto result = run_of(Compiled(fmt::format(
+          R"toml(x = {{ type = "constant", value = 0.4 }}
+y = {{ type = "servo-amplifier", in = ["{0}*x", "{0}*y"], {1}, bandwidth = inf }}
+)toml",
+          sign, amplifier)));
+      ASSERT_EQ(result.warnings.size(), sign > 0 ? 0U : 1U) << amplifier;
+      if (sign < 0) {
+        EXPECT_THAT(text::to_string(result.warnings[0]),
+                    HasSubstr("from t = 0 s on the equations of 'y' are solved where a machine would not "
+                              "settle: its amplifiers run away from y = -0.4"));
+      }
+    }
+  }
+}
+
 // An ideal amplifier is one that is fast: from x₀ it goes down along −sin 5x, to the nearest multiple of
 // 2π/5. A root between, to which Newton's method would go as well, repels it, and a long step would leap to a
 // root behind the next. (A root within a twentieth of 1 + |x₀| counts as the one at `initial`, even if it

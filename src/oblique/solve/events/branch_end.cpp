@@ -206,16 +206,22 @@ std::vector<EventRecord> BranchWatch::merged_with(std::vector<EventRecord> event
 std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
                                                 network::Workspace& workspace, double t,
                                                 const std::vector<double>& states, const std::string& file) {
-  std::vector<std::size_t> with_branches;
+  // Of a large loop without branches `check` tells.
+  constexpr std::size_t kMostUnknowns = 60;
+  std::vector<std::size_t> judged;
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    if (program.loop_has_branches(loop)) with_branches.push_back(loop);
+    const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
+    const bool has_amplifier = std::any_of(unknowns.begin(), unknowns.end(),
+                                           [&](std::size_t u) { return held_by_amplifier(program, u); });
+    if (program.loop_has_branches(loop) || (has_amplifier && unknowns.size() <= kMostUnknowns))
+      judged.push_back(loop);
   }
   std::vector<text::Diagnostic> warnings;
-  if (with_branches.empty()) return warnings;
+  if (judged.empty()) return warnings;
   std::vector<double> signals(program.n_signals());
   const auto here = program.signals(t, states.data(), signals.data(), workspace);
   if (!here) throw loop_error(program, workspace.trouble(), t, file);
-  for (const std::size_t loop : with_branches) {
+  for (const std::size_t loop : judged) {
     const Motion motion = motion_of(program, *here, loop);
     if (motion != Motion::rest)
       warnings.push_back(unstable_warning(program, workspace, loop, motion, t, file));

@@ -29,7 +29,7 @@ class StraightLine final : public Interpolant {
 };
 
 /// A warning for each loop whose amplifiers, at equal speeds, do not rest at the solution that they have been
-/// given at (t, states), though the loop has or had others. Throws SolveError.
+/// given at (t, states), be it one of several or the only one. Throws SolveError.
 std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
                                                 network::Workspace& workspace, double t,
                                                 const std::vector<double>& states, const std::string& file);
