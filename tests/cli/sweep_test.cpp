@@ -74,6 +74,11 @@ TEST_F(Sweep, TellsHowMeasuresGoWithWhatIsSpacedLogarithmically) {
                         "p goes as x.initial^-2.00, from -2.00 to -2.00 between neighbours\n"));
   EXPECT_EQ(outcome.out.find("zero goes"), std::string::npos);
   EXPECT_EQ(outcome.out.find("same goes"), std::string::npos);
+  // h/(1 + h) from h = 0.01 to 10: log10 9.18, log10 5.5 and log10 1.82, the median and the range of which
+  // count.
+  const Outcome falling =
+      oblique("sweep " + decay_ + " --vary x.initial=1e-2..10:4:log --measure 'q = start(x)/(1 + start(x))'");
+  EXPECT_THAT(falling.out, HasSubstr("q goes as x.initial^0.74, from 0.26 to 0.96 between neighbours\n"));
   const Outcome linear = oblique("sweep " + decay_ + " --vary x.initial=1,2,3 --measure 'end(x)'");
   EXPECT_EQ(linear.out.find("goes as"), std::string::npos);
 }

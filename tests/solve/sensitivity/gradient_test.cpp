@@ -59,6 +59,17 @@ TEST(Gradient, OfAnIntegral) {
   EXPECT_NEAR(found.by_parameter[1], (1 - e) / rate, kGradientTolerance);
 }
 
+// ∫ t x dt from t = 0 to 2 = x₀ (1 − 4 e^(−3))/1.5²: what is integrated depends on the time too.
+TEST(Gradient, OfAnIntegralThatTheTimeWeights) {
+  const Compiled made(std::string(kDecay) +
+                      "w = { type = \"ramp\" }\ny = { type = \"multiplier\", in = [\"w\", \"x\"] }\n");
+  const Gradient found =
+      gradient(made.program, made.flat, until(2), {RunNumber::Kind::integral, "y", 0}, {"x.initial"});
+  const double by_start = (1 - 4 * std::exp(-3.0)) / (1.5 * 1.5);
+  EXPECT_NEAR(found.value, 0.7 * by_start, kGradientTolerance);
+  EXPECT_NEAR(found.by_parameter[0], by_start, kGradientTolerance);
+}
+
 // A servo loop that starts at rest: the gradient holds what its rest depends on.
 TEST(Gradient, OfARunThatStartsAtRest) {
   const Compiled made(
