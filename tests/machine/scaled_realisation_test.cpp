@@ -343,6 +343,23 @@ m = { type = "counter", clock = "xy" }
           remedy);
 }
 
+// What sets an integrator has its own level, and none of its scale: 0.009 becomes nearly a machine unit.
+TEST(ScaledRealisation, ScalesAnIntegratorThatIsSetAsAnyOther) {
+  const ScaledRealisation made = realise_scaled(parsed(R"toml(
+[run]
+until = 3
+[blocks]
+one = { type = "constant" }
+far = { type = "comparator", in = ["x", "-0.009*one"] }
+x = { type = "integrator", in = ["0.01*one"], set = "far", start = "-0.005*one" }
+)toml"),
+                                                shipped_blocks(), desk_machine());
+  const auto x = std::find_if(made.scales.begin(), made.scales.end(),
+                              [](const SignalScale& scale) { return scale.signal.ends_with("x"); });
+  ASSERT_NE(x, made.scales.end());
+  EXPECT_GT(x->largest, 0.9);  // a factor of two digits uses more than nine tenths
+}
+
 // A count of 14 is 28 units of the diagram, and less than one of the machine; the carry is a level in both.
 TEST(ScaledRealisation, BringsACountOntoTheMachineAndLeavesItsCarry) {
   const ScaledRealisation made = realise_scaled(parsed(R"toml(

@@ -44,6 +44,14 @@ diagram::MachineProfile ten_volts() {
   return machine;
 }
 
+/// Those of a diagram of these blocks as they stand, on a machine of 10 V.
+MachineSheets sheets_as_written(const std::string& blocks) {
+  const diagram::FlatDiagram flat =
+      diagram::flatten(diagram::parse_diagram(testing::diagram_text(blocks), "d.toml"), shipped_blocks());
+  return make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"),
+                     ten_volts());
+}
+
 // By hand, with integrators that invert: x is −∫(10·¼ y − 0.2), y is −∫10·¼ (−x), and −x takes an
 // inverter; 25 is three inputs of 10 behind 25/30.
 TEST(Sheets, ListEveryConnectionWithTheGainOfItsInput) {
@@ -59,14 +67,10 @@ TEST(Sheets, ListEveryConnectionWithTheGainOfItsInput) {
 }
 
 TEST(Sheets, LeaveOutWiresThatCarryNothing) {
-  const diagram::FlatDiagram flat = diagram::flatten(
-      diagram::parse_diagram(
-          testing::diagram_text("one = { type = \"constant\" }\nx = { type = \"integrator\", in = "
-                                "[\"0*one\"] }\n"),
-          "d.toml"),
-      shipped_blocks());
-  const MachineSheets made =
-      make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts());
+  const MachineSheets made = sheets_as_written(R"(
+one = { type = "constant" }
+x = { type = "integrator", in = ["0*one"] }
+)");
   EXPECT_TRUE(made.connections.rows.empty());
 }
 
@@ -93,15 +97,11 @@ TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
 // By hand: about 0 the line from (−0.4, −0.1) to (0.2, 0.2), of slope ½; above it 1, below it −1; then a jump
 // of 0.5 at 0.5, beyond which it is level.
 TEST(Sheets, GiveTheSettingsOfFunctionGenerators) {
-  const diagram::FlatDiagram flat = diagram::flatten(diagram::parse_diagram(testing::diagram_text(R"(
+  const Sheet functions = sheets_as_written(R"(
 x = { type = "integrator", in = ["f"] }
 f = { type = "function-generator", in = "x", points = [[-1, 0.5], [-0.4, -0.1], [0.2, 0.2], [0.5, 0.5], [0.5, 0], [1, 0]] }
-)"),
-                                                                            "d.toml"),
-                                                     shipped_blocks());
-  const Sheet functions =
-      make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts())
-          .functions;
+)")
+                              .functions;
   EXPECT_THAT(functions.columns, ElementsAre("element", "signal", "breakpoint [V]", "output [V]",
                                              "slope beyond", "slope added", "side"));
   EXPECT_THAT(functions.rows,
@@ -175,16 +175,12 @@ TEST(Sheets, ComputeInMachineUnitsWhereTheVoltageIsNotKnown) {
 
 // What is set at an element itself, not by a potentiometer: in volts, but for what is the machine's.
 TEST(Sheets, SayWhatIsSetAtAnElementItself) {
-  const diagram::FlatDiagram flat = diagram::flatten(diagram::parse_diagram(testing::diagram_text(R"(
+  const Sheet test = sheets_as_written(R"(
 x = { type = "integrator", in = "k", rate = 10, initial = 0.2, limit = 0.5 }
 k = { type = "comparator", in = "x", low = -1, hysteresis = 0.05 }
 a = { type = "servo-amplifier", in = ["x", "a"], gain = 1e5, bandwidth = 20 }
-)"),
-                                                                            "d.toml"),
-                                                     shipped_blocks());
-  const Sheet test =
-      make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts())
-          .static_test;
+)")
+                         .static_test;
   std::vector<std::string> kinds;
   for (const auto& row : test.rows) kinds.push_back(row[2]);
   EXPECT_THAT(kinds, ElementsAre("integrator, k0 = 10 1/s, starts at 2 V, limited to ±5 V",
@@ -194,16 +190,12 @@ a = { type = "servo-amplifier", in = ["x", "a"], gain = 1e5, bandwidth = 20 }
 
 // What stays as it is on a machine has to be set there: voltages in volts, the rest as the block says.
 TEST(Sheets, SayAllThatIsSetAtLogicAndDelays) {
-  const diagram::FlatDiagram flat = diagram::flatten(diagram::parse_diagram(testing::diagram_text(R"(
+  const Sheet test = sheets_as_written(R"(
 x = { type = "integrator", in = ["m"] }
 m = { type = "monostable", trigger = "n.carry", length = 0.4, low = -0.2 }
 n = { type = "counter", clock = "x", modulus = 4, step = 0.25 }
-)"),
-                                                                            "d.toml"),
-                                                     shipped_blocks());
-  const Sheet test =
-      make_sheets(flat, solve::static_test(network::Program(network::assemble(flat)), "d.toml"), ten_volts())
-          .static_test;
+)")
+                         .static_test;
   EXPECT_THAT(test.rows, Contains(ElementsAre(
                              "X1", "m", "monostable, length 0.4 s, retriggerable 0, low -2 V, high 10 V",
                              "-2.0000", "")));

@@ -177,7 +177,7 @@ class Chooser {
       for (std::size_t port = 0; port < element.inputs.size(); ++port) {
         const bool sum = element.definition->inputs[port].sum;
         if (sum && element.role != Role::summer) continue;
-        if (element.logic && element.logic->inputs[port]) continue;
+        if (has_fixed_level(element, port)) continue;
         for (const CircuitTerm& term : element.inputs[port].terms)
           factor =
               std::min(factor, (sum ? greatest_gain() : 1) * source_factor(term) / std::abs(term.weight));
