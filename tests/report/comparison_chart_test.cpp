@@ -101,6 +101,21 @@ TEST(ComparisonChart, DrawsBandsOfSeveralRunsAndTheRunOfOne) {
   EXPECT_EQ(names(panels_of(comparison, drawn(1)).at(0)), (std::vector<std::string>{"the run"}));
 }
 
+// Of a hundred runs with the errors 1 to 100 a percentile is its own rank, the next whole one.
+TEST(ComparisonChart, DrawsTheBandsAtTheirPercentiles) {
+  const std::vector<draw::Curve> curves = panels_of(compare::Comparison(), drawn(100)).at(0).curves;
+  ASSERT_EQ(curves.size(), 3U);
+  const auto expect = [](const std::vector<Eigen::Vector2d>& points, double error) {
+    ASSERT_EQ(points.size(), 2U);
+    for (const Eigen::Vector2d& point : points) EXPECT_EQ(point.y(), error);
+  };
+  expect(curves[0].points, 98);
+  expect(curves[0].other_edge, 3);
+  expect(curves[1].points, 75);
+  expect(curves[1].other_edge, 25);
+  expect(curves[2].points, 50);
+}
+
 TEST(MonteCarloReport, ListsWhatASingleRunHasDrawn) {
   MonteCarloReport one = drawn(1);
   one.draws = {{"C.cx.tolerance", 0.25}};

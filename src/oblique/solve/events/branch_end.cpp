@@ -3,19 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <Eigen/LU>
-
-#include <oblique/solve/stability/eigenvalues.h>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
+#include <oblique/solve/stability/amplifier_motion.h>
 
 namespace oblique::solve {
 namespace {
@@ -24,35 +21,6 @@ constexpr double kJump = 1e-3;  ///< of 1 + |z|: a smooth way does not change by
 
 bool held_by_amplifier(const network::Program& program, std::size_t unknown) {
   return program.unknowns()[unknown].held_by_amplifier;
-}
-
-/// What the amplifiers of a loop do about a solution, infinitely fast.
-enum class Motion { rest, swing, run_away };
-
-/// By the eigenvalues of dg/dz of the amplifiers' equations, the rest of the loop solved: where the real part
-/// of one is below 0 they run away, where one has none but an imaginary part they swing for ever.
-Motion motion_of(const network::Program& program, const network::SignalEvaluation& here, std::size_t loop) {
-  const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
-  std::vector<Eigen::Index> amplifiers, others;
-  for (std::size_t i = 0; i < unknowns.size(); ++i)
-    (held_by_amplifier(program, unknowns[i]) ? amplifiers : others).push_back(static_cast<Eigen::Index>(i));
-  const Eigen::MatrixXd jacobian = here.loop_jacobian(loop);
-  Eigen::MatrixXd own = jacobian(amplifiers, amplifiers);
-  if (!others.empty()) {
-    const Eigen::MatrixXd inner = jacobian(others, others);
-    own -= jacobian(amplifiers, others) *
-           inner.partialPivLu().solve(Eigen::MatrixXd(jacobian(others, amplifiers)));
-  }
-  if (!own.allFinite()) return Motion::rest;
-  constexpr double kRounding = 1e-9;  // a root of even order has no derivative but that of its rounding
-  constexpr double kTurn = 1e-6;
-  const Eigen::VectorXcd values = eigenvalues_of(own);
-  const double largest = std::max(values.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
-  if (values.real().minCoeff() <= -kRounding * largest) return Motion::run_away;
-  const bool swings = std::any_of(values.begin(), values.end(), [&](const std::complex<double>& value) {
-    return value.real() <= kRounding * largest && std::abs(value.imag()) > kTurn * largest;
-  });
-  return swings ? Motion::swing : Motion::rest;
 }
 
 std::string amplifier_names(const network::Program& program, std::size_t loop) {
@@ -64,17 +32,29 @@ std::string amplifier_names(const network::Program& program, std::size_t loop) {
 }
 
 text::Diagnostic unstable_warning(const network::Program& program, const network::Workspace& workspace,
-                                  std::size_t loop, Motion motion, double t, const std::string& file) {
+                                  std::size_t loop, AmplifierMotion motion, double t,
+                                  const std::string& file) {
   const std::size_t first = program.loops()[loop].unknowns.front();
-  return {{file, {}},
-          fmt::format(
-              "from t = {:.6g} s on the equations of {} are solved where a machine would not settle: its "
-              "amplifiers {} {} = {:.6g}",
-              t, amplifier_names(program, loop), motion == Motion::swing ? "swing about" : "run away from",
-              program.unknowns()[first].name, workspace.unknown(first)),
-          {},
-          "reverse the signs at the amplifier's inputs, give it another 'initial', or a finite gain and "
-          "bandwidth to see what a machine does"};
+  return {
+      {file, {}},
+      fmt::format("from t = {:.6g} s on the equations of {} are solved where a machine would not settle: its "
+                  "amplifiers {} {} = {:.6g}",
+                  t, amplifier_names(program, loop),
+                  motion == AmplifierMotion::swing ? "swing about" : "run away from",
+                  program.unknowns()[first].name, workspace.unknown(first)),
+      {},
+      "reverse the signs at the amplifier's inputs, give it another 'initial', or a finite gain and "
+      "bandwidth to see what a machine does"};
+}
+
+/// Whether a run looks at what the amplifiers of a loop do. (Of a large loop without branches `check` tells.)
+bool is_judged(const network::Program& program, std::size_t loop) {
+  constexpr std::size_t kMostUnknowns = 60;
+  const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
+  return program.loop_has_branches(loop) ||
+         (unknowns.size() <= kMostUnknowns &&
+          std::any_of(unknowns.begin(), unknowns.end(),
+                      [&](std::size_t u) { return held_by_amplifier(program, u); }));
 }
 
 /// The largest change of an unknown of a loop, of 1 + |z|.
@@ -95,10 +75,11 @@ BranchWatch::BranchWatch(const network::Program& program, network::Workspace& wo
       file_(file),
       span_(options.until - begin),
       row_(span_ / std::max(1, options.samples - 1)),
-      resolution_(1e-10 * span_) {
+      resolution_(1e-10 * span_),
+      judged_(program.loops().size()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    told_.push_back(!program.loop_has_branches(loop));
-    if (told_.back()) continue;
+    told_.push_back(!is_judged(program, loop));
+    if (!program.loop_has_branches(loop)) continue;
     any_ = true;
     unseen_ = unseen_ || !program.derivatives_need(loop);
   }
@@ -160,8 +141,8 @@ void BranchWatch::pass(double t, const std::vector<double>& states) {
   for (std::size_t loop = 0; loop < program_.loops().size(); ++loop) {
     if (!program_.loop_has_branches(loop)) continue;
     const bool jumps = change_of(program_, workspace_, loop, before) > kJump;
-    const Motion motion = motion_of(program_, *here, loop);
-    if (motion != Motion::run_away) {
+    const AmplifierMotion motion = amplifier_motion(program_, loop, here->loop_jacobian(loop));
+    if (motion != AmplifierMotion::run_away) {
       if (!jumps) continue;
       std::vector<std::string> ways;
       for (const std::size_t u : program_.loops()[loop].unknowns) {
@@ -182,14 +163,18 @@ void BranchWatch::pass(double t, const std::vector<double>& states) {
 
 void BranchWatch::look(double t, const std::vector<double>& states, bool told) {
   const bool all_told = std::find(told_.begin(), told_.end(), false) == told_.end();
-  if (!any_ || all_told) return;
+  if (all_told) return;
   std::vector<double> signals(program_.n_signals());
   const auto here = program_.signals(t, states.data(), signals.data(), workspace_);
   if (!here) return;  // whoever looks there next says what is wrong
   for (std::size_t loop = 0; loop < told_.size(); ++loop) {
     if (told_[loop]) continue;
-    const Motion motion = motion_of(program_, *here, loop);
-    if (motion == Motion::rest) continue;
+    Eigen::MatrixXd jacobian = here->loop_jacobian(loop);
+    const bool first = judged_[loop].size() == 0;
+    if (!first && jacobian == judged_[loop]) continue;  // of linear equations, at most events
+    const AmplifierMotion motion = amplifier_motion(program_, loop, jacobian);
+    judged_[loop] = std::move(jacobian);
+    if (motion == AmplifierMotion::rest) continue;
     told_[loop] = true;
     if (!told) warnings_.push_back(unstable_warning(program_, workspace_, loop, motion, t, file_));
   }
@@ -206,15 +191,9 @@ std::vector<EventRecord> BranchWatch::merged_with(std::vector<EventRecord> event
 std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
                                                 network::Workspace& workspace, double t,
                                                 const std::vector<double>& states, const std::string& file) {
-  // Of a large loop without branches `check` tells.
-  constexpr std::size_t kMostUnknowns = 60;
   std::vector<std::size_t> judged;
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
-    const bool has_amplifier = std::any_of(unknowns.begin(), unknowns.end(),
-                                           [&](std::size_t u) { return held_by_amplifier(program, u); });
-    if (program.loop_has_branches(loop) || (has_amplifier && unknowns.size() <= kMostUnknowns))
-      judged.push_back(loop);
+    if (is_judged(program, loop)) judged.push_back(loop);
   }
   std::vector<text::Diagnostic> warnings;
   if (judged.empty()) return warnings;
@@ -222,8 +201,8 @@ std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
   const auto here = program.signals(t, states.data(), signals.data(), workspace);
   if (!here) throw loop_error(program, workspace.trouble(), t, file);
   for (const std::size_t loop : judged) {
-    const Motion motion = motion_of(program, *here, loop);
-    if (motion != Motion::rest)
+    const AmplifierMotion motion = amplifier_motion(program, loop, here->loop_jacobian(loop));
+    if (motion != AmplifierMotion::rest)
       warnings.push_back(unstable_warning(program, workspace, loop, motion, t, file));
   }
   return warnings;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <oblique/network/program/program.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/run.h>
@@ -79,11 +81,12 @@ class BranchWatch {
   const network::Program& program_;
   network::Workspace& workspace_;
   const std::string& file_;
-  double span_, row_, resolution_;  ///< [s]
-  bool any_ = false;                ///< any loop has branches
-  bool unseen_ = false;             ///< one that no derivative needs
-  std::vector<bool> told_;          ///< of each loop: it has no branches, or a warning
-  std::optional<double> tried_;     ///< [s] where the solver was let to start anew
+  double span_, row_, resolution_;       ///< [s]
+  bool any_ = false;                     ///< any loop has branches
+  bool unseen_ = false;                  ///< one that no derivative needs
+  std::vector<bool> told_;               ///< of each loop: there is nothing to tell, or it has been told
+  std::vector<Eigen::MatrixXd> judged_;  ///< of each loop: where `look` found its amplifiers at rest
+  std::optional<double> tried_;          ///< [s] where the solver was let to start anew
   std::vector<EventRecord> jumps_;
   std::vector<text::Diagnostic> warnings_;
 };

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/stability/amplifier_motion.h>
 
 namespace oblique::solve {
 namespace {
@@ -91,7 +92,8 @@ LoopJumps::LoopJumps(const network::Program& program, network::Workspace& worksp
     if (watched.directions.size() == 0 || (program.loop_is_linear(loop) && watched.switches.empty()))
       continue;
     watched.blind = watched.directions.minCoeff() > 0;
-    any_blind_ = any_blind_ || watched.blind;
+    watched.goes = watched.blind || !watched.switches.empty();
+    any_goes_ = any_goes_ || watched.goes;
     watched_.push_back(std::move(watched));
   }
 }
@@ -112,11 +114,11 @@ void LoopJumps::begin() {
 }
 
 void LoopJumps::note(double t, std::span<const double> x) {
-  if (!any_blind_) return;
+  if (!any_goes_) return;
   std::vector<bool> stable;
   for (const Watched& watched : watched_) {
-    const auto here = watched.blind ? pull(watched, t, x, workspace_) : std::nullopt;
-    stable.push_back(!here || is_stable(here->rates));
+    const auto here = watched.goes ? pull(watched, t, x, workspace_) : std::nullopt;
+    stable.push_back(!here || rests(watched, here->rates));
   }
   begin();
   for (std::size_t k = 0; k < watched_.size(); ++k) watched_[k].stable = stable[k];
@@ -135,12 +137,14 @@ void LoopJumps::place(std::size_t loop, const std::vector<double>& unknowns, dou
 bool LoopJumps::settle(double t, std::span<const double> x) {
   bool any = false;
   for (const Watched& watched : watched_) {
-    const auto here = watched.blind ? pull(watched, t, x, workspace_) : std::nullopt;
+    const auto here = watched.goes ? pull(watched, t, x, workspace_) : std::nullopt;
     if (!here) continue;
     std::vector<double> now;
     for (std::size_t u = 0; u < unknowns_.size(); ++u) now.push_back(workspace_.unknown(u));
-    const bool jumps = part_between(unknowns_of(watched, unknowns_), unknowns_of(watched, now)) > kJump;
-    if ((jumps || (watched.stable && !is_stable(here->rates))) && go_from_before(watched, t, x)) any = true;
+    const bool jumps =
+        watched.blind && part_between(unknowns_of(watched, unknowns_), unknowns_of(watched, now)) > kJump;
+    if ((jumps || (watched.stable && !rests(watched, here->rates))) && go_from_before(watched, t, x))
+      any = true;
   }
   return any;
 }
@@ -167,6 +171,12 @@ std::optional<LoopJumps::Pull> LoopJumps::pull_at(const Watched& watched, const 
   workspace.hold_loop(watched.loop, t, {z.begin(), z.end()}, true);
   if (!place(watched, t, x, workspace)) return std::nullopt;
   return pull(watched, t, x, workspace);
+}
+
+/// Whether the elements of a loop stay at a solution.
+bool LoopJumps::rests(const Watched& watched, const Eigen::MatrixXd& rates) const {
+  return watched.blind ? is_stable(rates)
+                       : amplifier_motion(program_, watched.loop, rates) != AmplifierMotion::run_away;
 }
 
 /// Puts the switches and tables of a loop where its unknowns, held, ask for them; false where they go on
@@ -224,7 +234,7 @@ bool LoopJumps::follow(const Watched& watched, Eigen::VectorXd& z, double t, std
       continue;
     }
     z = next;
-    if (h >= kLongest && change < kAtRest && change >= last) return is_stable(here->rates);
+    if (h >= kLongest && change < kAtRest && change >= last) return rests(watched, here->rates);
     if (z.cwiseAbs().maxCoeff() > kFarAway) return false;
     here = pull_at(watched, z, t, x, workspace);
     last = change;

@@ -31,15 +31,16 @@ bool may_have_several(const network::Program& program, std::size_t loop);
 /// loop keeps to its solution. An event may take that away, or leave the loop at one from which its elements
 /// would run away; and where there are several, Newton's method goes to any. The loop then goes where its
 /// elements take it from where it was, if they follow their inputs with one short lag, while the switches and
-/// tables in it turn over on the way. (Of amplifiers see BranchWatch; only where a run finds no start do they
-/// go so too.) Not installed.
+/// tables in it turn over on the way. So go amplifiers that have limits, where they would run away from
+/// between these; of others see BranchWatch, and only where a run finds no start do they go so too. Not
+/// installed.
 class LoopJumps {
  public:
   /// All must outlive this.
   LoopJumps(const network::Program& program, network::Workspace& workspace, const Thresholds& thresholds);
 
   /// Whether there is any such loop.
-  bool any() const { return any_blind_; }
+  bool any() const { return any_goes_; }
   /// Notes the guesses from which the loops begin.
   void begin();
   /// Notes the solutions at (t, x), before what happens next.
@@ -58,6 +59,7 @@ class LoopJumps {
     std::size_t loop = 0;
     Eigen::VectorXd directions;  ///< of each unknown: an amplifier moves as −residual, another as +residual
     bool blind = true;           ///< of elements without memory alone
+    bool goes = true;            ///< at events, and where a run starts
     bool stable = true;          ///< when it was noted
   };
 
@@ -71,6 +73,7 @@ class LoopJumps {
                            network::Workspace& workspace);
   std::optional<Pull> pull_at(const Watched& watched, const Eigen::VectorXd& z, double t,
                               std::span<const double> x, network::Workspace& workspace);
+  bool rests(const Watched& watched, const Eigen::MatrixXd& rates) const;
   bool place(const Watched& watched, double t, std::span<const double> x, network::Workspace& workspace);
   bool follow(const Watched& watched, Eigen::VectorXd& z, double t, std::span<const double> x,
               network::Workspace& workspace);
@@ -81,7 +84,7 @@ class LoopJumps {
   network::Workspace& workspace_;
   const Thresholds& thresholds_;
   std::vector<Watched> watched_;
-  bool any_blind_ = false;
+  bool any_goes_ = false;
   std::vector<double> unknowns_, discrete_states_;  ///< as they were noted
   std::vector<double> event_functions_, signals_;
 };

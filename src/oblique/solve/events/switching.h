@@ -54,9 +54,9 @@ class Switching {
 
   /// Settles switches and events at the start of the run, and the states that start from signals.
   /// `bring_to_rest` is called whenever something has changed that servo loops may follow; it throws
-  /// SolveError where they do not settle. With `loops_go` the algebraic loops without amplifiers go to where
-  /// their elements take them from the guesses; else they stay where Newton's method finds them. Throws
-  /// SolveError.
+  /// SolveError where they do not settle. With `loops_go` the algebraic loops without amplifiers, and those
+  /// of amplifiers that would run away from between their limits, go to where their elements take them from
+  /// the guesses; else they stay where Newton's method finds them. Throws SolveError.
   void start(double t, std::vector<double>& x, const std::function<void()>& bring_to_rest, bool loops_go);
 
   /// Settles everything at time t, after the switches that `known_wait` or `search` announced have turned
