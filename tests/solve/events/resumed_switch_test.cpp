@@ -50,6 +50,28 @@ s = { type = "sign", in = "x" }
   }
 }
 
+// A solver of stiff equations may leave a decay on the other side of zero, by less than its error when that was
+// larger: it goes on decaying there, through whatever else happens.
+TEST(ResumedSwitch, OfADecayMayLieOnTheOtherSide) {
+  const testing::Compiled made(R"(
+x = { type = "transfer-lag", in = "-2*x", time_constant = 0.09375, initial = 0.375 }
+s = { type = "sign", in = "x" }
+clock = { type = "pulse-train", period = 0.1, width = 0.05 }
+)");
+  RunOptions options;
+  options.until = 0.91;
+  options.tolerance = 1e-6;
+  std::string text = to_text(oblique::solve::run(made.program, made.flat, options).state);
+  const std::size_t at = text.find("\"x\" = ");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, text.find('\n', at) - at, "\"x\" = -1.9e-10");
+  options.from = parse_run_state(text, "state.toml");
+  options.until = 1.8;
+  options.method = diagram::IntegrationMethod::bdf;
+  const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
+  EXPECT_THAT(testing::row_values(run, "s"), ::testing::Each(1));
+}
+
 // x′ = 0.5 − sgn x slides along zero from t = 2/3 on.
 const char* const kSlide = R"(
 half = { type = "constant", value = 0.5 }

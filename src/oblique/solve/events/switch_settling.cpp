@@ -394,6 +394,7 @@ void SwitchSettling::keep_positions_within_errors() {
     const double error = std::min(errors[s], Thresholds::kMostSlack);
     if (event_functions_.is_known(s) || restored_[s] || !(std::abs(event_functions_[s]) <= error)) continue;
     event_functions_.thresholds().widen(s, error);
+    if (event_functions_.against(s) > 0) let_touch(s);  // as it has been let lie there
     kept_[program_.switch_structure().unit[s]] = true;
   }
 }
