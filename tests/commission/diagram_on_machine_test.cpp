@@ -239,6 +239,30 @@ v = "v"
   EXPECT_LT(put_on_machine(diagram, shipped_blocks(), *diagram::find_machine("model-1")).difference, 1e-5);
 }
 
+// A row that lies just where a pulse begins has two values: none of its own machine differs. Here all rows
+// do, so that what ten straight lines leave of a sine, 1/(16·10²)·(∫√|sin|)² = 0.0036, shows half way
+// between.
+TEST(DiagramOnMachine, ComparesNothingWhereSomethingJumps) {
+  const auto difference = [](const char* output) {
+    const diagram::Diagram diagram = diagram::parse_diagram(std::string(R"toml(format = "oblique-diagram/1"
+[run]
+until = 3
+samples = 31
+[blocks]
+clock = { type = "pulse-train", period = 0.1, width = 0.03, delay = 0.1 }
+count = { type = "counter", clock = "clock" }
+x     = { type = "ramp", slope = 1 }
+wave  = { type = "sine", in = "x" }
+[outputs]
+y = ")toml") + output + "\"\n",
+                                                            "clock.toml");
+    return put_on_machine(diagram, shipped_blocks(), *diagram::find_machine("tr-48")).difference;
+  };
+  EXPECT_LT(difference("count.out"), 1e-7);
+  EXPECT_GT(difference("wave"), 1e-3);
+  EXPECT_LT(difference("wave"), 0.0036);
+}
+
 // What is expected of iterative and repetitive operation is met by the same diagrams on a machine.
 TEST(DiagramOnMachine, KeepsModesOfOperation) {
   for (const std::string file :

@@ -133,6 +133,9 @@ INSTANTIATE_TEST_SUITE_P(
         ElementCase{
             "relay",
             R"(y = { type = "relay", coil = "u", make = "3*v", break = "u", pull_in = 0.9, drop_out = -0.3 })"},
+        ElementCase{
+            "relay_with_a_delay",
+            R"(y = { type = "relay", coil = "u", make = "3*v", break = "u", pull_in = 0.9, drop_out = -0.3, delay = 0.15 })"},
         ElementCase{"flip_flop", R"(hot = { type = "comparator", in = ["u", "-1.5*one"] }
 late = { type = "comparator", in = ["v"] }
 y_of = { type = "flip-flop", set = "hot", reset = "late" }
@@ -179,6 +182,19 @@ y = { type = "summer", in = ["y_of.out", "3*y_of.setting"] })"},
         ElementCase{"resolver", R"(y_of = { type = "resolver", length = "u", angle = "2*v" }
 y = { type = "summer", in = ["y_of.x", "y_of.y"] })",
                     1e-4},
+        ElementCase{"servo_multiplier", R"(y_of = { type = "servo-multiplier", x = "u", y1 = "3*v", y2 = "u" }
+y = { type = "summer", in = ["y_of.out1", "y_of.out2", "-5*y_of.position"] })"},
+        ElementCase{
+            "slow_servo_multiplier",
+            R"(y_of = { type = "servo-multiplier", x = "u", y1 = "3*v", y3 = "one", loop_gain = 20, time_constant = 0.05, velocity_limit = 4, dead_zone = 0.3, aligned = 0, initial = -0.8 }
+y = { type = "summer", in = ["y_of.out1", "10*y_of.out3"] })"},
+        // as the resolver, with r = 1 and 2
+        ElementCase{
+            "servo_resolver",
+            R"(y_of = { type = "servo-resolver", angle = "2*v", loop_gain = 20, velocity_limit = 0.7, aligned = 0, initial = -1 }
+fast = { type = "servo-resolver", angle = "2*v", r = "u", loop_gain = 50, time_constant = 0.01, dead_zone = 0.1 }
+y = { type = "summer", in = ["y_of.x", "fast.x", "fast.y"] })",
+            1e-4},
         ElementCase{"time", R"toml(y = { type = "time-function", formula = "sin(time)", scale = 4 })toml",
                     4e-5}),
     [](const auto& tested) { return std::string(tested.param.name); });
@@ -300,23 +316,30 @@ x = { type = "integrator", in = ["v"], initial = 0.08 }
 }
 
 TEST(ScaledRealisation, NamesEveryBlockThatTheMachineHasNot) {
+  diagram::BlockLibrary library = shipped_blocks();
+  for (const auto& [name, formula] : {std::pair("distance", "sqrt(x^2 + y^2)"), {"angle", "atan2(y, x)"}})
+    library.add(diagram::parse_block(
+        fmt::format("format = \"oblique-block/1\"\ntitle = \"{}\"\n[inputs]\nx = {{}}\ny = {{}}\n[outputs]\n"
+                    "out = {{}}\n[equations]\nout = \"{}\"\n",
+                    name, formula),
+        std::string(name) + ".toml", name));
   const std::string remedy =
       ", and no circuit of its elements for it; expected amplifiers, potentiometers, multipliers, "
       "comparators, and "
       "functions of one signal\n"
       "  remedy: build it of these";
-  EXPECT_EQ(testing::message_of<RealiseError>([] {
+  EXPECT_EQ(testing::message_of<RealiseError>([&] {
               realise_scaled(parsed(R"toml([blocks]
 one = { type = "constant" }
 x = { type = "integrator", in = ["one"] }
-a = { type = "servo-multiplier", x = "x", y1 = "one" }
-b = { type = "servo-multiplier", x = "x", y1 = "one" }
-n = { type = "servo-resolver", angle = "x" }
+a = { type = "distance", x = "x", y = "one" }
+b = { type = "distance", x = "x", y = "one" }
+n = { type = "angle", x = "x", y = "one" }
 )toml"),
-                             shipped_blocks(), desk_machine());
+                             library, desk_machine());
             }),
-            "test.toml:5:1: the machine Machine has no servo-multiplier, which 'a', 'b' are" + remedy +
-                "\ntest.toml:7:1: the machine Machine has no servo-resolver, which 'n' is" + remedy);
+            "test.toml:5:1: the machine Machine has no distance, which 'a', 'b' are" + remedy +
+                "\ntest.toml:7:1: the machine Machine has no angle, which 'n' is" + remedy);
 }
 
 // The clock of a counter keeps its level, 0.5, in every scale: what it is fed with could not be brought onto

@@ -280,5 +280,22 @@ TEST(Rest, RefusesALoopThatItsLagsDoNotHoldEither) {
                         "states on their loop move; still moving: 'a'"));
 }
 
+// From where the amplifiers start, the way to where their sums are zero leads across what bends: |y| = 0.5
+// from −0.4 over 0, a limiter from below to above, a table over three of its corners. On the side where they
+// start they would run away. The static error is out/(μ ∂r/∂out), μ = 10⁶.
+TEST(Rest, IsFoundBeyondWhatBends) {
+  const auto run = testing::run_of(testing::Compiled(R"toml(half = { type = "constant", value = 0.5 }
+magnitude = { type = "absolute-value", in = "y" }
+y = { type = "servo-amplifier", in = ["magnitude", "-half"], initial = -0.4 }
+limited = { type = "limiter", in = "z", low = -1, high = 0.2 }
+z = { type = "servo-amplifier", in = ["limited", "0.1*z", "-half"], initial = -3 }
+lines = { type = "function-generator", in = "w", points = [[-3, -1], [0, -1], [1, -0.5], [2, 0.5], [3, 0.4]] }
+w = { type = "servo-amplifier", in = ["lines"], initial = -2 }
+)toml"));
+  EXPECT_NEAR(testing::row_values(run, "y").front(), 0.5, 1e-6);
+  EXPECT_NEAR(testing::row_values(run, "z").front(), 3, 1e-4);
+  EXPECT_NEAR(testing::row_values(run, "w").front(), 1.5, 1e-5);
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -16,30 +16,54 @@
 namespace oblique::commission {
 namespace {
 
-solve::Trajectory run_on_ideal_elements(const diagram::Diagram& diagram,
-                                        const diagram::BlockLibrary& library) {
+/// With what lies half way between the rows as `extra`.
+solve::Run run_on_ideal_elements(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
   const diagram::FlatDiagram flat = diagram::flatten_on_ideal_elements(diagram, library);
-  return solve::run(network::Program(network::assemble(flat)), flat, solve::options_of(diagram.run))
-      .trajectory;
+  solve::RunOptions options = solve::options_of(diagram.run);
+  for (int row = 0; row + 1 < options.samples; ++row)
+    options.extra_times.push_back((row + 0.5) * options.until / (options.samples - 1));
+  return solve::run(network::Program(network::assemble(flat)), flat, options);
 }
 
-/// The largest difference between two runs of the same outputs, over the largest value of the output; one
-/// that `made` never brings to a millionth of the machine unit is nothing. Where phases follow each other,
-/// integrators jump: a row that lies a rounding before such a jump in one of them alone does not count.
-double difference_of(const solve::Trajectory& a, const solve::Trajectory& b, const diagram::Diagram& made) {
+/// Of each row whether it lies at an event, where what jumps has two values.
+std::vector<bool> rows_at_events(const solve::Trajectory& rows,
+                                 const std::vector<solve::EventRecord>& events) {
+  constexpr double kBeside = 1e-3;  // of the way between two rows
+  std::vector<bool> found(rows.rows(), false);
+  if (rows.rows() < 2) return found;
+  const double begin = rows.at(0, 0), step = rows.at(1, 0) - begin;
+  for (const solve::EventRecord& event : events) {
+    const double place = (event.time - begin) / step, row = std::round(place);
+    if (std::abs(place - row) <= kBeside && row >= 0 && row < static_cast<double>(found.size()))
+      found[static_cast<std::size_t>(row)] = true;
+  }
+  return found;
+}
+
+/// The largest difference between two runs of the same outputs in the rows, and half way between them, over
+/// the largest value of the output; one that `made` never brings to a millionth of the machine unit is
+/// nothing. Those at events do not count. Where phases follow each other, integrators jump: nor does a row
+/// that lies a rounding before such a jump in one of them alone.
+double difference_of(const solve::Run& one, const solve::Run& other, const diagram::Diagram& made) {
   constexpr double kNothing = 1e-6;
   const bool has_phases = !made.timeline.phases.empty();
   double largest = 0;
-  for (std::size_t c = 1; c < a.columns().size(); ++c) {
+  for (std::size_t c = 1; c < one.trajectory.columns().size(); ++c) {
     double size = 0, difference = 0;
-    const std::size_t rows = std::min(a.rows(), b.rows());
-    for (std::size_t r = 0; r < rows; ++r) {
-      size = std::max(size, std::abs(a.at(r, c)));
-      double here = std::abs(a.at(r, c) - b.at(r, c));
-      for (const std::size_t beside : {r - 1, r + 1}) {
-        if (has_phases && beside < rows) here = std::min(here, std::abs(a.at(r, c) - b.at(beside, c)));
+    for (const auto of : {&solve::Run::trajectory, &solve::Run::extra}) {
+      const solve::Trajectory &a = one.*of, &b = other.*of;
+      const std::vector<bool> at_event = rows_at_events(a, one.events),
+                              at_other_event = rows_at_events(b, other.events);
+      const std::size_t rows = std::min(a.rows(), b.rows());
+      for (std::size_t r = 0; r < rows; ++r) {
+        size = std::max(size, std::abs(a.at(r, c)));
+        if (at_event[r] || at_other_event[r]) continue;
+        double here = std::abs(a.at(r, c) - b.at(r, c));
+        for (const std::size_t beside : {r - 1, r + 1}) {
+          if (has_phases && beside < rows) here = std::min(here, std::abs(a.at(r, c) - b.at(beside, c)));
+        }
+        difference = std::max(difference, here);
       }
-      difference = std::max(difference, here);
     }
     const double unit = c <= made.outputs.size() ? std::abs(made.outputs[c - 1].scale) : 0;
     if (size > kNothing * unit) largest = std::max(largest, difference / size);

@@ -102,6 +102,10 @@ void BlockLibrary::add_directory(const std::filesystem::path& directory) {
 
 void BlockLibrary::add(BlockDefinition definition) {
   std::string name = definition.name;
+  add_as(std::move(name), std::move(definition));
+}
+
+void BlockLibrary::add_as(std::string name, BlockDefinition definition) {
   const auto [at, is_new] =
       entries_.insert_or_assign(std::move(name), std::make_shared<const Entry>(std::move(definition)));
   if (is_new) order_.push_back(at->first);

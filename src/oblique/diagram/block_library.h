@@ -26,6 +26,8 @@ class BlockLibrary {
   /// Adds a block, or replaces the one of that name; flat diagrams that were made with the old one are then
   /// void.
   void add(BlockDefinition definition);
+  /// The same under a name of its own.
+  void add_as(std::string name, BlockDefinition definition);
   /// The block of that name, or nothing.
   const BlockDefinition* find(std::string_view name) const;
   /// The block that a machine's elements of a role are written as: the one with it that was added first, so

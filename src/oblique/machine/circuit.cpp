@@ -187,6 +187,7 @@ class Reducer {
     };
     add({input.constant, std::nullopt});
     for (const diagram::FlatTerm& term : input.terms) {
+      if (term.weight == 0) continue;  // what it comes from may be needed by nothing else
       CircuitTerm value = resolve(term.signal);
       value.weight *= term.weight;
       add(value);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string_view>
 #include <unordered_map>
@@ -92,10 +93,11 @@ std::vector<std::string> keep_operating(diagram::FlatDiagram& flat, const diagra
   return found;
 }
 
-/// Where an integrator without inputs that is in initial condition while it tracks does not start as a store
-/// does: an integrator starts at what it is to track.
-void check_start(const diagram::FlatDiagram& flat, const diagram::FlatBlock& store,
-                 const std::unordered_map<std::string, double>& at_start) {
+/// What a store holds from the start on, until it tracks, where that is something else than its input then,
+/// which is where an integrator starts that is to follow it. Throws RealiseError for one that charges its
+/// capacitor at the start, from nothing, and is to begin elsewhere.
+std::optional<double> held_at_start(const diagram::FlatDiagram& flat, const diagram::FlatBlock& store,
+                                    const std::unordered_map<std::string, double>& at_start) {
   const auto value = [&](const diagram::FlatInput& input) {
     double sum = input.constant;
     for (const diagram::FlatTerm& term : input.terms)
@@ -104,16 +106,41 @@ void check_start(const diagram::FlatDiagram& flat, const diagram::FlatBlock& sto
   };
   const double in = value(store.inputs[0]), initial = parameter_of(store, "initial");
   const bool tracks = value(store.inputs[1]) > 0.5;
-  if (tracks && parameter_of(store, "acquisition_time") == 0) return;
+  if (tracks && parameter_of(store, "acquisition_time") == 0) return std::nullopt;
   const double starts = tracks ? 0 : in;
   constexpr double kEqual = 1e-9;
-  if (std::abs(starts - initial) <= kEqual * std::max(std::abs(in), std::abs(initial))) return;
+  if (std::abs(starts - initial) <= kEqual * std::max(std::abs(in), std::abs(initial))) return std::nullopt;
+  if (!tracks) return initial;
   throw RealiseError(text::Diagnostic{
       store.place,
-      fmt::format("'{}' starts at {:.6g}, and an integrator that {} would start at {:.6g}", store.path,
-                  initial, tracks ? "charges its capacitor" : "stores its input", starts),
-      "a start that an integrator in track and store has",
-      fmt::format("give it initial = {:.6g}{}", starts, tracks ? "" : ", or let it track at the start")});
+      fmt::format("'{}' starts at {:.6g}, and an integrator that charges its capacitor would start at 0",
+                  store.path, initial),
+      "a start that an integrator in track and store has", "give it initial = 0"});
+}
+
+/// Appends a comparator that the first rise of a mode line turns over, and nothing back; its output.
+diagram::SignalRef latch(diagram::SignalRef line, const std::string& name, const text::Place& place,
+                         diagram::FlatDiagram& flat, const diagram::BlockLibrary& library) {
+  diagram::FlatBlock latched = element(library, Role::comparator, free_name(name, paths_of(flat)), place);
+  latched.parameters[latched.definition->find_parameter("hysteresis").value()] = 1;
+  latched.choose_behaviour();
+  for (std::size_t port = 0; port < latched.inputs.size(); ++port) {
+    if (latched.definition->inputs[port].sum) latched.inputs[port] = {{{1, line}}, -0.4};
+  }
+  flat.blocks.push_back(std::move(latched));
+  return {flat.blocks.size() - 1, 0};
+}
+
+/// What is at `initial` while the latch is low, and at `input` from then on: the latch times their
+/// difference.
+diagram::FlatInput beginning_with(double initial, diagram::FlatInput input, diagram::SignalRef latched,
+                                  const std::string& name, const text::Place& place,
+                                  diagram::FlatDiagram& flat, const diagram::BlockLibrary& library) {
+  diagram::FlatBlock change = element(library, Role::multiplier, free_name(name, paths_of(flat)), place);
+  input.constant -= initial;
+  change.inputs = {{{{1, latched}}, 0}, std::move(input)};
+  flat.blocks.push_back(std::move(change));
+  return {{{1, {flat.blocks.size() - 1, 0}}}, initial};
 }
 
 /// Whether it is a store that tracks its first input while the second, `track`, is high, unless a user has
@@ -139,11 +166,12 @@ void make_stores(diagram::FlatDiagram& flat, const diagram::BlockLibrary& librar
   std::set<std::string> names{"main", "mode", "for", "until"};
   for (const diagram::FlatGroup& group : flat.timeline.groups) names.insert(group.name);
   if (flat.timeline.groups.empty()) flat.timeline.groups.push_back({"main", {}, {}});
+  std::map<std::pair<std::size_t, std::size_t>, diagram::SignalRef> latches;  // of each mode line
   const std::size_t n = flat.blocks.size();
   for (std::size_t b = 0; b < n; ++b) {
     if (!is_store(flat.blocks[b])) continue;
     const diagram::FlatBlock store = flat.blocks[b];
-    check_start(flat, store, at_start);
+    const std::optional<double> held = held_at_start(flat, store, at_start);
     std::string name = store.path;
     std::replace(name.begin(), name.end(), '.', '_');
     name = free_name(name, names);
@@ -157,10 +185,18 @@ void make_stores(diagram::FlatDiagram& flat, const diagram::BlockLibrary& librar
     integrator.inputs[integrator.definition->find_input("start").value()] = store.inputs[0];
     flat.blocks[b] = std::move(integrator);
     const diagram::FlatInput& track = store.inputs[1];
-    const bool is_line = track.constant == 0 && track.terms.size() == 1 && track.terms.front().weight == 1;
+    const bool is_signal = track.constant == 0 && track.terms.size() == 1 && track.terms.front().weight == 1;
+    const bool is_line = is_signal && (!held || is_mode_line(flat.blocks[track.terms.front().signal.block]));
     const diagram::SignalRef line =
         is_line ? track.terms.front().signal
                 : compare_with_half(flat, library, name + "_initial", track, store.place);
+    if (held) {
+      const auto [latched, is_new] = latches.try_emplace({line.block, line.output}, line);
+      if (is_new) latched->second = latch(line, name + "_tracked", store.place, flat, library);
+      diagram::FlatInput input = beginning_with(*held, store.inputs[0], latched->second, name + "_change",
+                                                store.place, flat, library);
+      flat.blocks[b].inputs[flat.blocks[b].definition->find_input("start").value()] = std::move(input);
+    }
     flat.timeline.groups.push_back({name, line, {}});
     for (diagram::FlatPhase& phase : flat.timeline.phases)
       phase.modes.push_back(diagram::OperatingMode::operate);

@@ -12,6 +12,7 @@
 #include <oblique/diagram/names.h>
 #include <oblique/machine/line_segments.h>
 #include <oblique/machine/logic_ports.h>
+#include <oblique/machine/mode_control.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/role.h>
 
@@ -122,12 +123,16 @@ class Tabulator {
       first_.push_back(signals_);
       signals_ += block.definition->outputs.size();
     }
+    needed_.resize(signals_);
+    for (const diagram::FlatOutput& output : flat.outputs) need(output.signal);
+    for (const diagram::SignalRef signal : mode_signals(flat.timeline)) need(signal);
   }
 
   std::vector<TabulatedFunction> tabulate() {
     const std::size_t n = flat_.blocks.size();
     for (std::size_t b = 0; b < n; ++b) {
       if (flat_.blocks[b].definition->role != Role::other) continue;
+      if (!is_needed(b)) continue;
       FunctionReader function(flat_.blocks[b]);
       if (!function.is_function()) continue;
       // A noise generator is a function of the time, and an element.
@@ -139,6 +144,29 @@ class Tabulator {
   }
 
  private:
+  /// Notes a signal, and what the block that gives it is fed with.
+  void need(diagram::SignalRef signal) {
+    std::vector<diagram::SignalRef> found{signal};
+    while (!found.empty()) {
+      const diagram::SignalRef next = found.back();
+      found.pop_back();
+      const bool seen = is_needed(next.block);
+      needed_[first_[next.block] + next.output] = true;
+      if (seen) continue;
+      for (const diagram::FlatInput& input : flat_.blocks[next.block].inputs) {
+        for (const diagram::FlatTerm& term : input.terms) {
+          if (term.weight != 0) found.push_back(term.signal);
+        }
+      }
+    }
+  }
+
+  bool is_needed(std::size_t block) const {
+    const auto first = needed_.begin() + static_cast<std::ptrdiff_t>(first_[block]);
+    const auto outputs = static_cast<std::ptrdiff_t>(flat_.blocks[block].definition->outputs.size());
+    return std::find(first, first + outputs, true) != first + outputs;
+  }
+
   void replace(std::size_t b, const FunctionReader& function) {
     const diagram::FlatBlock block = flat_.blocks[b];  // whose place others take
     const diagram::FlatInput argument = function.input() ? block.inputs[*function.input()] : time();
@@ -148,7 +176,7 @@ class Tabulator {
     std::vector<diagram::FlatBlock> made;
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       const std::string path = outputs.size() == 1 ? block.path : block.path + "." + outputs[k].name;
-      const auto value = [&](double x) { return function_at(function, k, x); };
+      const auto value = [&](double x) { return needed_[first_[b] + k] ? function_at(function, k, x) : 0; };
       made.push_back(element_for(value, block, path, argument, range));
     }
     flat_.blocks[b] = std::move(made.front());
@@ -334,6 +362,7 @@ class Tabulator {
   int segments_;
   std::vector<std::size_t> first_;  ///< signal of each block
   std::size_t signals_ = 0;
+  std::vector<bool> needed_;  ///< each signal, by an output or for the modes
   std::optional<std::size_t> clock_;
   std::vector<TabulatedFunction> functions_;
   text::Diagnostics diagnostics_;

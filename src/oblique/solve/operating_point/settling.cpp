@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/stability/linear_factors.h>
@@ -14,15 +17,30 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The diagram with its clock stopped: only the states of the groups move.
+/// The switches at which signals only bend: those of magnitudes and limiters, and those that move tables
+/// along.
+std::vector<std::uint32_t> bends_of(const network::Program& program) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t s = 0; s < program.switches().size(); ++s) {
+    const network::Switch& made = program.switches()[s];
+    if (made.moves_along || (made.turning == network::Turning::bends && !made.rate)) found.push_back(s);
+  }
+  return found;
+}
+
+/// The diagram with its clock stopped: only the states of the groups move, and with them those of the
+/// switches at which signals bend that are to.
 class Settling {
  public:
   Settling(const network::Program& program, network::Workspace& workspace, double t,
-           const StateGroups& groups)
+           const StateGroups& groups, std::vector<std::uint32_t> bends)
       : program_(program),
         workspace_(workspace),
         t_(t),
         groups_(groups),
+        bends_(std::move(bends)),
+        event_functions_(program.switches().size()),
+        signals_(program.n_signals()),
         values_(program.jacobian_pattern().entries()),
         group_of_(program.n_states(), kHeld),
         place_(program.n_states(), 0) {
@@ -35,6 +53,7 @@ class Settling {
   }
 
   bool derivatives(const VectorXd& x, VectorXd& dxdt) {
+    if (!place_bends(x)) return false;
     if (!program_.derivatives(t_, x.data(), dxdt.data(), workspace_)) return false;
     for (std::size_t i = 0; i < group_of_.size(); ++i) {
       if (group_of_[i] == kHeld) dxdt[static_cast<Index>(i)] = 0;
@@ -87,6 +106,33 @@ class Settling {
  private:
   static constexpr std::size_t kHeld = static_cast<std::size_t>(-1);
 
+  /// Puts the switches where the states x ask for them; false where they lead each other in a circle.
+  bool place_bends(const VectorXd& x) {
+    constexpr int kMostRounds = 100;
+    for (int round = 0; round < kMostRounds; ++round) {
+      if (bends_.empty()) return true;
+      if (!program_.event_functions(t_, x.data(), event_functions_.data(), workspace_)) return false;
+      bool turned = false;
+      for (const std::uint32_t s : bends_) {
+        const std::uint32_t state = program_.switches()[s].discrete_state;
+        const double position = event_functions_[s] > 0 ? 1 : 0;
+        turned = turned || workspace_.discrete_state(state) != position;
+        workspace_.set_discrete_state(state, position);
+      }
+      const auto here = program_.signals(t_, x.data(), signals_.data(), workspace_);
+      if (!here) return false;
+      std::vector<std::pair<std::uint32_t, double>> lines;
+      for (const std::uint32_t s : bends_) {
+        const auto event = program_.switches()[s].moves_along;
+        if (event && here->condition(*event))
+          lines.emplace_back(program_.events()[*event].actions.front().index, here->action_value(*event, 0));
+      }
+      for (const auto& [segment, line] : lines) workspace_.set_discrete_state(segment, line);
+      if (!turned && lines.empty()) return true;
+    }
+    return false;
+  }
+
   std::size_t row(std::size_t entry) const {
     return static_cast<std::size_t>(program_.jacobian_pattern().rows[entry]);
   }
@@ -119,15 +165,15 @@ class Settling {
   network::Workspace& workspace_;
   double t_;
   const StateGroups& groups_;
+  std::vector<std::uint32_t> bends_;
+  std::vector<double> event_functions_, signals_;
   std::vector<double> values_;         ///< of the Jacobian
   std::vector<std::size_t> group_of_;  ///< of each state
   std::vector<Index> place_;           ///< of each state in its group
 };
 
-}  // namespace
-
 bool settle(const network::Program& program, network::Workspace& workspace, double t,
-            const StateGroups& groups, std::vector<double>& states) {
+            const StateGroups& groups, std::vector<std::uint32_t> bends, std::vector<double>& states) {
   constexpr double kMostChange = 0.2;  // of 1 + |x|, in a step
   constexpr double kSmallChange = 0.02;
   constexpr double kLongest =
@@ -137,7 +183,7 @@ bool settle(const network::Program& program, network::Workspace& workspace, doub
   constexpr double kNothing = 1e-17;  // of 1 + |x|
   constexpr double kFarAway = 1e6;    // [machine unit]
   constexpr int kMostSteps = 2000;
-  Settling system(program, workspace, t, groups);
+  Settling system(program, workspace, t, groups, std::move(bends));
   const auto n = static_cast<Index>(states.size());
   VectorXd x = VectorXd::Map(states.data(), n), derivatives(n), next(n), next_derivatives(n);
   if (!system.derivatives(x, derivatives) || !system.linearise(x)) return false;
@@ -185,6 +231,23 @@ bool settle(const network::Program& program, network::Workspace& workspace, doub
     }
   }
   return false;
+}
+
+}  // namespace
+
+bool settle(const network::Program& program, network::Workspace& workspace, double t,
+            const StateGroups& groups, std::vector<double>& states) {
+  const std::vector<std::uint32_t> bends = bends_of(program);
+  if (!bends.empty()) {
+    const std::vector<double> before(workspace.discrete_states().begin(), workspace.discrete_states().end());
+    std::vector<double> moved = states;
+    if (settle(program, workspace, t, groups, bends, moved)) {
+      states = std::move(moved);
+      return true;
+    }
+    workspace.load_discrete_states(before);  // a rest at a bend has no side of its own
+  }
+  return settle(program, workspace, t, groups, {}, states);
 }
 
 }  // namespace oblique::solve
