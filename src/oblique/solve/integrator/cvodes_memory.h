@@ -59,7 +59,7 @@ struct CvodesMemory {
   std::int64_t max_steps;
   std::int64_t steps = 0;
   SolverStatistics before_restart;  ///< CVODES counts from its last start
-  int small_steps = 0;
+  SmallSteps small_steps;
   bool saw_refusal = false;  ///< these two since the last step that was not small
   bool saw_not_finite = false;
 

@@ -25,7 +25,7 @@ void CvodesSolver::restart(double t, std::span<const double> x, double end, doub
   m.clock = 0;
   m.end = end;
   m.length = length;
-  m.small_steps = 0;
+  m.small_steps.restart();
   m.begin();
 }
 
@@ -67,7 +67,7 @@ void CvodesSolver::limit_step(double longest) {
 double CvodesSolver::step() {
   CvodesMemory& m = *memory_;
   if (m.steps >= m.max_steps) throw SolverFailure{SolverFailure::Kind::step_budget, m.t, 0};
-  if (m.small_steps == 0) m.saw_refusal = m.saw_not_finite = false;
+  if (!m.small_steps.any()) m.saw_refusal = m.saw_not_finite = false;
   double before = m.clock;
   int code = m.take_step(1);
   // Newton's iteration leaves the state of a servo loop within a tolerance that shrinks where it passes zero,
@@ -95,9 +95,7 @@ double CvodesSolver::step() {
   if (!all_finite(N_VGetArrayPointer(m.states.get()), m.system->size())) {
     throw SolverFailure{SolverFailure::Kind::not_finite, m.t, code};
   }
-  const bool small = m.clock - before < kSmallestStep * std::min(std::abs(m.t), m.length);
-  m.small_steps = small && m.clock < m.length ? m.small_steps + 1 : 0;
-  if (m.small_steps > kMostSmallSteps) throw m.failure(code);
+  if (m.small_steps.take(before, m.clock, m.length, m.t)) throw m.failure(code);
   return m.t;
 }
 

@@ -74,7 +74,7 @@ void RosenbrockSolver::restart(double t, std::span<const double> x, double end, 
   length_ = length;
   clock_ = 0;
   step_ = 0;
-  small_steps_ = 0;
+  small_steps_.restart();
   next_.reset();
   first_ = true;
   knows_linearisation_ = false;
@@ -134,7 +134,7 @@ double RosenbrockSolver::length_of_next() const {
 
 double RosenbrockSolver::step() {
   if (statistics_.steps >= settings_.max_steps) throw SolverFailure{SolverFailure::Kind::step_budget, t_, 0};
-  if (small_steps_ == 0) saw_refusal_ = saw_not_finite_ = false;
+  if (!small_steps_.any()) saw_refusal_ = saw_not_finite_ = false;
   if (!next_) begin();
   bool tried = false;
   for (int tries = 0; tries < kMostTries; ++tries) {
@@ -147,10 +147,9 @@ double RosenbrockSolver::step() {
       next_ = h * factor_after(outcome, tried);
     }
     if (outcome == Outcome::taken) {
+      const double before = clock_;
       take(h);
-      const bool small = h < kSmallestStep * std::min(std::abs(t_), length_);
-      small_steps_ = small && clock_ < length_ ? small_steps_ + 1 : 0;
-      if (small_steps_ > kMostSmallSteps) throw failure();
+      if (small_steps_.take(before, clock_, length_, t_)) throw failure();
       return t_;
     }
     tried = true;

@@ -63,7 +63,7 @@ class RosenbrockSolver final : public Solver {
   std::optional<double> next_;        ///< step to try [s]; nothing: there has been none since the start
   bool first_ = true;                 ///< no step since the start
   bool knows_linearisation_ = false;  ///< at the time reached, in `jacobian_` and `by_time_`
-  int small_steps_ = 0;
+  SmallSteps small_steps_;
   bool saw_refusal_ = false, saw_not_finite_ = false;  ///< since the last step that was not small
   SolverStatistics statistics_;
 

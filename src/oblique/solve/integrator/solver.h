@@ -68,10 +68,32 @@ inline double time_within(double start, double clock, double end, double length)
   return clock >= length ? end : std::min(start + clock, std::nextafter(end, start));
 }
 
-/// Steps shorter than this fraction of the time reached, some roundings of it, cannot move the clock any
-/// more. (The length of the run is no measure: a fast decay at the head of a long run takes steps that are
-/// nothing beside it.) After so many in a row a solver gives up.
-inline constexpr double kSmallestStep = 8 * std::numeric_limits<double>::epsilon();
-inline constexpr int kMostSmallSteps = 20;
+/// Counts steps that cannot move the time any more, being some roundings of the time reached. (The length of
+/// the run is no measure: a fast decay at the head of a long run takes steps that are nothing beside it.)
+/// After so many in a row in which the time since the start has not doubled, as it does in a decay that is
+/// faster than the time shows, a solver gives up.
+class SmallSteps {
+ public:
+  void restart() { *this = SmallSteps(); }
+  /// Another step, from `before` to `clock` of `length` since a start at a time of this magnitude [s]; true
+  /// where that is one too many.
+  bool take(double before, double clock, double length, double time) {
+    constexpr double kSmallest = 8 * std::numeric_limits<double>::epsilon();
+    constexpr int kMost = 20;
+    const bool small = clock - before < kSmallest * std::min(std::abs(time), length) && clock < length;
+    if (!small || clock > 2 * since_) {
+      since_ = clock;
+      count_ = 0;
+    } else {
+      ++count_;
+    }
+    return count_ > kMost;
+  }
+  bool any() const { return count_ > 0; }
+
+ private:
+  double since_ = 0;  ///< clock from which it is to double
+  int count_ = 0;
+};
 
 }  // namespace oblique::solve

@@ -32,7 +32,11 @@ void Thresholds::update(double t, const network::Evaluation& here) {
     roundings_[s] = rounding_of(s, size);
     resolutions_[s] = std::isfinite(size) ? 8 * kEpsilon * size : std::numeric_limits<double>::infinity();
     if (program_.switches()[s].rate) {  // known to rounding of the time
-      now_[s] = 8 * kEpsilon * (std::isfinite(size) ? size : std::abs(t));
+      double known = std::isfinite(size) ? size : std::abs(t);
+      // A steep argument of a table is not: it would be moved there and back.
+      if (program_.switches()[s].moves_along)
+        known = std::max(known, std::abs(here.known_rate(s).value_or(0) * t));
+      now_[s] = 8 * kEpsilon * known;
     } else {
       now_[s] = std::max(roundings_[s], slack_[s]);
     }

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from .tools import Motion
+from .tools import Motion, ode
 
 
 def peak_current_buck():
@@ -239,3 +239,22 @@ def angle_of_an_oscillation():
     wrapped = lambda t: (t + np.pi) % (2 * np.pi) - np.pi
     return {"angle at 20": wrapped(20), "area at 20": wrapped(20)**2 / 2, "area at 50": wrapped(50)**2 / 2,
             "turns at 50": np.floor((50 + np.pi) / (2 * np.pi))}
+
+
+def homing_by_straight_lines():
+    """The angle of the line of sight from its equation at every moment, by the straight lines."""
+    corners = np.linspace(0.39, 0.53, 11)
+    line = lambda f, phi: np.interp(phi, corners, f(corners))
+
+    def angle(dx, dy):
+        return brentq(lambda phi: dx * line(np.sin, phi) - dy * line(np.cos, phi), 0.39, 0.53, xtol=1e-15)
+
+    def f(t, y):
+        dx, dy, head = y
+        vx, vy, phi = 600 * np.cos(head), 600 * np.sin(head), angle(dx, dy)
+        length = dx * line(np.cos, phi) + dy * line(np.sin, phi)
+        return [-250 - vx, -vy, 4 * (-dx * vy - dy * (-250 - vx)) / length**2]
+
+    dx, dy, head = ode(f, [6000, 2500, 0.2], 7, max_step=0.01)(7)
+    phi = angle(dx, dy)
+    return {"los at 7": phi, "head at 7": head, "range at 7": dx * line(np.cos, phi) + dy * line(np.sin, phi)}
