@@ -308,22 +308,30 @@ TEST_F(PatchForMachine, TakesTheTimeScaleThatIsAskedFor) {
 }
 
 TEST_F(PatchForMachine, RefusesADiagramThatTheMachineHasNoElementsFor) {
-  write("servo.toml",
-        std::string(kSpring).insert(std::string(kSpring).find("[outputs]"),
-                                    "moved = { type = \"servo-multiplier\", x = \"x\", y1 = \"x\" }\n") +
-            "moved = \"moved.out1\"\n");
-  const Outcome refused = oblique("patch servo.toml --machine tr-10 -o made.toml");
+  write("own/distance.toml", R"toml(format = "oblique-block/1"
+title = "Distance"
+[inputs]
+x = {}
+y = {}
+[outputs]
+out = {}
+[equations]
+out = "sqrt(x^2 + y^2)"
+)toml");
+  write("far.toml", std::string(kSpring).insert(std::string(kSpring).find("[outputs]"),
+                                                "far = { type = \"distance\", x = \"x\", y = \"x\" }\n") +
+                        "far = \"far\"\n");
+  const Outcome refused = oblique("patch far.toml --machine tr-10 -o made.toml --blocks own");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err,
-              HasSubstr("servo.toml:8:1: the machine EAI PACE TR-10 (1959) has no servo-multiplier, "
-                        "which 'moved' is, and no circuit of its elements for it"));
+  EXPECT_THAT(refused.err, HasSubstr("far.toml:8:1: the machine EAI PACE TR-10 (1959) has no distance, "
+                                     "which 'far' is, and no circuit of its elements for it"));
   EXPECT_THAT(refused.err,
               HasSubstr("  remedy: build it of these; --force writes the diagram unscaled, with its own "
                         "blocks\n"));
-  const Outcome forced = oblique("patch servo.toml --machine tr-10 -o made.toml --force");
+  const Outcome forced = oblique("patch far.toml --machine tr-10 -o made.toml --blocks own --force");
   EXPECT_EQ(forced.status, 0) << forced.err;
   EXPECT_THAT(forced.err,
-              HasSubstr("warning: not scaled: the machine EAI PACE TR-10 (1959) has no servo-multiplier"));
+              HasSubstr("warning: not scaled: the machine EAI PACE TR-10 (1959) has no distance"));
 
   const Outcome product = oblique("patch " + std::string(OBLIQUE_SOURCE_DIR) +
                                   "/diagrams/historical/van-der-pol.toml --machine ec-1 -o other.toml");

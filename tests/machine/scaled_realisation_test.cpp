@@ -230,6 +230,61 @@ y = "y"
   EXPECT_LE(off, GetParam().within > 1e-7 ? 0U : 1U) << diagram::write_diagram(made.diagram);
 }
 
+// x′ = 4 u − 3 x + 2 in whatever convention: what leaks is an input that somebody can patch.
+TEST(ScaledRealisation, WiresWhatLeaksAndDrifts) {
+  const std::string text = R"toml(
+[run]
+until = 2
+[blocks]
+u = { type = "integrator", in = ["-u"], initial = 3 }
+x = { type = "integrator", in = ["2*u"], rate = 2, leakage = 3, drift = 2, initial = 1 }
+[outputs]
+x = "x"
+)toml";
+  const diagram::Diagram diagram = parsed(text);
+  const ScaledRealisation made = realise_scaled(diagram, shipped_blocks(), desk_machine());
+  const std::string written = diagram::write_diagram(made.diagram);
+  EXPECT_EQ(written.find("leakage"), std::string::npos) << written;
+  EXPECT_EQ(written.find("drift"), std::string::npos) << written;
+  EXPECT_LT(testing::difference(diagram, made.diagram), 1e-7);
+  EXPECT_EQ(testing::message_of<RealiseError>([&] {
+              realise_scaled(parsed(text + "[timeline]\nphases = [{ mode = \"operate\", for = 1 }, { mode = "
+                                           "\"hold\", for = 1 }]\n"),
+                             shipped_blocks(), desk_machine());
+            }),
+            "test.toml:7:1: integrator 'x' leaks or drifts while it holds too; expected what can be wired\n"
+            "  remedy: take 'leakage' and 'drift' out, and feed it with what they stand for");
+}
+
+// What was published of a moment was published of the diagram's time, as what is expected.
+TEST(ScaledRealisation, MovesPublishedMomentsWithTheTime) {
+  ScalingOptions options;
+  options.time = 5;
+  const ScaledRealisation made = realise_scaled(parsed(R"toml(
+[run]
+until = 2
+[blocks]
+x = { type = "integrator", in = ["-x"], initial = 1 }
+[outputs]
+x = "x"
+[expect]
+"x at 1" = { value = "exp(-1)", within = 1e-6 }
+[published]
+author = "A"
+title = "T"
+year = 1960
+[[published.value]]
+name = "x"
+at = 1
+value = 0.37
+within = 0.01
+)toml"),
+                                                shipped_blocks(), desk_machine(), options);
+  ASSERT_TRUE(made.diagram.published);
+  EXPECT_EQ(made.diagram.published->values.at(0).expected.time, 5);
+  EXPECT_EQ(made.diagram.expectations.at(0).time, 5);
+}
+
 // The small difference of two large signals is not blown up: no input is weighted more than ×10.
 TEST(ScaledRealisation, LeavesASmallDifferenceSmall) {
   const diagram::Diagram diagram = parsed(R"toml(

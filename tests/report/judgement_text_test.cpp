@@ -46,6 +46,38 @@ TEST(JudgementText, SaysHowFarASignalGoesBeyondTheMachineUnit) {
           .ends_with("\nwarning: on the elements of Machine 'x' goes 0.004 % beyond the machine unit\n"));
 }
 
+TEST(JudgementText, WarnsOfOutputsThatAreSomethingElse) {
+  const diagram::MachineProfile& machine = *diagram::find_machine("tr-48");
+  commission::DiagramOnMachine patched;
+  const auto warning = [&] {
+    const std::string text = machine_text(patched, machine);
+    const std::size_t at = text.find("warning: ");
+    return at == std::string::npos ? "" : text.substr(at);
+  };
+  patched.difference = 1e-4;
+  EXPECT_EQ(warning(), "");
+  patched.difference = 2e-3;
+  EXPECT_EQ(warning(),
+            "warning: that is more than the solver's tolerance explains, unless the diagram is chaotic or "
+            "gives its "
+            "elements errors of their own, which weigh otherwise in another scale\n");
+  patched.made.functions.push_back({"f", "sine", 10, 0, 1, 0.01});
+  EXPECT_EQ(warning(), "");
+  patched.difference = 0.1;
+  EXPECT_EQ(warning(),
+            "warning: the straight lines make something else of it, unless the diagram is chaotic; with more "
+            "of them "
+            "it may be less\n");
+  patched.published_left_out = 1;
+  EXPECT_THAT(
+      machine_text(patched, machine),
+      ::testing::HasSubstr("1 published value that sets something of the diagram is not taken along\n"));
+  patched.published_left_out = 2;
+  EXPECT_THAT(
+      machine_text(patched, machine),
+      ::testing::HasSubstr("2 published values that set something of the diagram are not taken along\n"));
+}
+
 TEST(JudgementText, NamesTheLoopsThatDoNotSettle) {
   commission::Judgement judgement = good();
   judgement.swinging = {"c", "s"};

@@ -209,6 +209,12 @@ DiagramOnMachine put_on_machine(const diagram::Diagram& diagram, const diagram::
   } catch (const solve::SolveError& error) {
     find_end(error, library, result);
   }
+  if (diagram.published) {
+    const auto& values = diagram.published->values;
+    result.published_left_out = static_cast<std::size_t>(
+        std::count_if(values.begin(), values.end(),
+                      [](const diagram::PublishedValue& value) { return !value.set.empty(); }));
+  }
   result.difference = difference_of(run_on_ideal_elements(diagram, library),
                                     run_on_ideal_elements(result.made.diagram, library), result.made.diagram);
   return result;

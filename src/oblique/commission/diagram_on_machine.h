@@ -15,7 +15,8 @@ struct DiagramOnMachine {
   machine::ScaledRealisation made;
   /// Of the outputs with ideal elements from those of the diagram, over the largest value of each.
   double difference = 0;
-  std::optional<Judgement> loops;  ///< of its servo loops on the machine, where it has any
+  std::size_t published_left_out = 0;  ///< published values that set parameters, which it has no longer
+  std::optional<Judgement> loops;      ///< of its servo loops on the machine, where it has any
   double loop_speed = 1;   ///< of servo amplifiers; below 1 the machine's elements are too slow for them
   std::string loop_fault;  ///< what is wrong with them at the speed of the diagram (`fault_of`), or empty
   struct Overload {

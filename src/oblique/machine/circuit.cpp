@@ -127,7 +127,37 @@ class Reducer {
     return value && value->signal && std::abs(value->weight) > kUnit ? std::nullopt : value;
   }
 
+  /// Whether an input gets nothing at all, by its wires alone.
+  bool is_nothing(const diagram::FlatInput& input, int depth = 0) const {
+    constexpr int kDeepest = 20;  // a ring of summers gives nothing, too, but is left to them
+    return input.constant == 0 && depth < kDeepest &&
+           std::all_of(input.terms.begin(), input.terms.end(), [&](const diagram::FlatTerm& term) {
+             return term.weight == 0 || gives_nothing(flat_.blocks[term.signal.block], depth + 1);
+           });
+  }
+
+  bool gives_nothing(const diagram::FlatBlock& block, int depth) const {
+    const auto is_none = [&](const diagram::FlatInput& input) { return is_nothing(input, depth); };
+    switch (block.definition->role) {
+      case Role::reference:
+        return parameter_of(block, "value") == 0;
+      case Role::potentiometer:
+      case Role::gain:
+      case Role::inverter:
+      case Role::summer:
+        return has_defaults(block, {"factor", "setting"}) &&
+               std::all_of(block.inputs.begin(), block.inputs.end(), is_none);
+      case Role::multiplier:
+      case Role::squarer:
+        return has_defaults(block) && std::any_of(block.inputs.begin(), block.inputs.end(), is_none);
+      default:
+        return false;
+    }
+  }
+
   std::optional<CircuitTerm> product(std::size_t index) {
+    // The other factor may be needed by nothing else.
+    if (gives_nothing(flat_.blocks[index], 0)) return CircuitTerm{0, std::nullopt};
     const auto [x, y] = factors(flat_.blocks[index]);
     const auto a = single(x, 1), b = single(y, 1);
     if (!a || !b) return std::nullopt;

@@ -85,7 +85,8 @@ class Writer {
                              input.sum ? std::span<const double>(machine_.input_gains) : gains_of_one_);
       if (element.role == Role::integrator && input.name == "start" && terms.empty())
         starts_by_wire = connect_start(e, terms);
-      if (terms.empty() && !input.default_value) terms = {{0, signals_.source(std::nullopt, false)}};
+      if (terms.empty() && !input.default_value && !may_stay_open(element, input))
+        terms = {{0, signals_.source(std::nullopt, false)}};
       if (element.role == Role::multiplier) {
         factors.push_back(terms.front());
       } else if (!terms.empty()) {
@@ -103,6 +104,15 @@ class Writer {
     for (const auto& [inverter, inverted] : signals_.inverters(e))
       add_block(inverter, Role::inverter, {diagram::wire_setting("in", {{1, inverted}})});
     result_.blocks[first].comment = comment_of(element.path);
+  }
+
+  /// Whether another input is fed that lets this one stay open: a store is an integrator that is fed with
+  /// nothing but its initial value.
+  static bool may_stay_open(const CircuitElement& element, const diagram::InputPort& input) {
+    return std::any_of(input.open_with.begin(), input.open_with.end(), [&](const std::string& other) {
+      const auto port = element.definition->find_input(other);
+      return port && !element.inputs[*port].terms.empty();
+    });
   }
 
   void add_block(std::string name, Role role, std::vector<text::Entry> settings) {

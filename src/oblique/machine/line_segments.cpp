@@ -37,13 +37,12 @@ class Fitter {
   }
 
   LineSegments make() {
-    double low = kInfinity, high = -kInfinity;
     for (const Point& point : grid_) {
       if (!std::isfinite(point.y)) return {{}, kInfinity};
-      low = std::min(low, point.y);
-      high = std::max(high, point.y);
+      low_ = std::min(low_, point.y);
+      high_ = std::max(high_, point.y);
     }
-    span_ = high - low;
+    span_ = high_ - low_;
     if (span_ == 0) return finish({grid_.front(), grid_.back()});
     if (jumps()) return {{}, kInfinity};
     std::vector<Point> corners = split_at_corners();
@@ -169,6 +168,7 @@ class Fitter {
   }
 
   /// Lines through points of a curve lie on one side of it: moved by half their error they err half as much.
+  /// Those of a function that has one sign, as the rate of a reaction, keep it.
   std::vector<Point> balance(std::vector<Point> points) const {
     std::vector<double> errors;
     for (std::size_t k = 1; k < points.size(); ++k)
@@ -176,11 +176,17 @@ class Fitter {
     points.front().y -= errors.front() / 2;
     points.back().y -= errors.back() / 2;
     for (std::size_t k = 1; k + 1 < points.size(); ++k) points[k].y -= (errors[k - 1] + errors[k]) / 4;
+    for (Point& point : points) {
+      if (low_ > 0) point.y = std::max(point.y, low_);
+      if (high_ < 0) point.y = std::min(point.y, high_);
+    }
     return points;
   }
 
   LineSegments finish(const std::vector<Point>& points) const {
     LineSegments lines;
+    lines.low = low_;
+    lines.high = high_;
     for (const Point& point : points) {
       lines.points.x.push_back(point.x);
       lines.points.y.push_back(point.y);
@@ -195,7 +201,7 @@ class Fitter {
   const std::function<double(double)>& function_;
   double from_, to_;
   std::size_t most_;
-  double span_ = 0;
+  double low_ = kInfinity, high_ = -kInfinity, span_ = 0;  ///< of the function
   std::vector<Point> grid_;
 };
 

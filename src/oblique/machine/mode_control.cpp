@@ -53,12 +53,18 @@ diagram::SignalRef compare_with_half(diagram::FlatDiagram& flat, const diagram::
   return {flat.blocks.size() - 1, 0};
 }
 
+/// Each line that is no logic gets a comparator, one for all groups that it controls.
 void wire_mode_lines(diagram::FlatDiagram& flat, const diagram::BlockLibrary& library) {
+  std::map<std::pair<std::size_t, std::size_t>, diagram::SignalRef> made;
   for (diagram::FlatGroup& group : flat.timeline.groups) {
     for (const auto& [line, what] : {std::pair(&group.initial, "initial"), std::pair(&group.hold, "hold")}) {
       if (!*line || is_mode_line(flat.blocks[(*line)->block])) continue;
       const text::Place place = flat.blocks[(*line)->block].place;
-      *line = compare_with_half(flat, library, group.name + "_" + what, {{{1, **line}}, 0}, place);
+      const auto [compared, is_new] = made.try_emplace({(*line)->block, (*line)->output}, **line);
+      if (is_new)
+        compared->second =
+            compare_with_half(flat, library, group.name + "_" + what, {{{1, **line}}, 0}, place);
+      *line = compared->second;
     }
   }
 }

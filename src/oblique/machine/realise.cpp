@@ -5,6 +5,7 @@
 #include <oblique/machine/circuit.h>
 #include <oblique/machine/element_writer.h>
 #include <oblique/machine/mode_control.h>
+#include <oblique/machine/own_drains.h>
 
 namespace oblique::machine {
 
@@ -14,6 +15,7 @@ Realisation realise(const diagram::Diagram& diagram, const diagram::BlockLibrary
   diagram::Diagram ideal = diagram;
   ideal.machine.profile = "ideal";
   diagram::FlatDiagram flat = diagram::flatten(ideal, library);
+  wire_drains(flat);
   prepare_modes(flat, flat, library, machine);
   const Circuit circuit = reduce(flat, library, most_weight_of_one(machine));
   return write_elements(diagram, flat, library, machine, circuit);

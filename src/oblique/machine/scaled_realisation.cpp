@@ -20,6 +20,7 @@
 #include <oblique/machine/element_writer.h>
 #include <oblique/machine/fixed_levels.h>
 #include <oblique/machine/mode_control.h>
+#include <oblique/machine/own_drains.h>
 #include <oblique/machine/signal_ranges.h>
 #include <oblique/machine/tabulated_functions.h>
 #include <oblique/solve/solve_error.h>
@@ -61,15 +62,19 @@ std::string names_of(const std::vector<TabulatedFunction>& functions) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The time of the run, and of what is expected of it, on the machine.
+/// The time of the run, and of what is expected and was published of it, on the machine.
 diagram::Diagram in_machine_time(diagram::Diagram diagram, double time) {
   if (time == 1) return diagram;
   diagram.run.until *= time;
   if (diagram.run.max_step) *diagram.run.max_step *= time;
-  for (diagram::Expectation& expectation : diagram.expectations) {
-    if (expectation.kind != diagram::Expectation::Kind::at_time) continue;
+  const auto move = [time](diagram::Expectation& expectation) {
+    if (expectation.kind != diagram::Expectation::Kind::at_time) return;
     expectation.time *= time;
     expectation.text = diagram::expectation_key(expectation);
+  };
+  std::for_each(diagram.expectations.begin(), diagram.expectations.end(), move);
+  if (diagram.published) {
+    for (diagram::PublishedValue& value : diagram.published->values) move(value.expected);
   }
   return diagram;
 }
@@ -101,6 +106,7 @@ class MachineScaling::State {
         time_(options.time) {
     const diagram::FlatDiagram own = diagram::flatten_on_ideal_elements(diagram, library);
     flat_ = in_circuits();
+    wire_drains(flat_);
     const bool has_others = std::any_of(flat_.blocks.begin(), flat_.blocks.end(), [](const auto& block) {
       return block.definition->role == diagram::Role::other;
     });

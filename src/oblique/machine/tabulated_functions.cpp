@@ -214,11 +214,7 @@ class Tabulator {
            "a comparator makes a jump; limit the argument where there is no value"});
       return block;
     }
-    double low = lines.points.y.front(), high = low;
-    for (const double y : lines.points.y) {
-      low = std::min(low, y);
-      high = std::max(high, y);
-    }
+    const double low = lines.low, high = lines.high;
     if (lines.error > kMostError * (high - low)) {
       diagnostics_.add(
           {block.place,
@@ -249,7 +245,10 @@ class Tabulator {
   diagram::FlatBlock summer(const text::PointTable& line, const diagram::FlatBlock& block,
                             const std::string& path, const diagram::FlatInput& argument) const {
     diagram::FlatBlock sum = element_for(block, Role::summer, path);
-    const double slope = line.x.size() < 2 ? 0 : (line.y[1] - line.y[0]) / (line.x[1] - line.x[0]);
+    double slope = line.x.size() < 2 ? 0 : (line.y[1] - line.y[0]) / (line.x[1] - line.x[0]);
+    const bool is_level =
+        std::abs(slope * (line.x.back() - line.x.front())) <= kStraight * std::abs(line.y.front());
+    if (is_level) slope = 0;  // but for rounding
     sum.inputs = {argument};
     for (diagram::FlatTerm& term : sum.inputs.front().terms) term.weight *= slope;
     sum.inputs.front().constant = line.y[0] - slope * (line.x[0] - argument.constant);

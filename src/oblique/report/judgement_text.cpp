@@ -80,9 +80,21 @@ std::string machine_text(const commission::DiagramOnMachine& patched,
                         machine.title);
   text += fmt::format("with ideal elements its outputs differ from the diagram's by {:.1e} of their size\n",
                       patched.difference);
-  constexpr double kSameOutputs = 1e-3;
-  if (patched.difference > kSameOutputs && patched.made.functions.empty())
-    text += "warning: that is more than the solver's tolerance explains, unless the diagram is chaotic\n";
+  constexpr double kSameOutputs = 1e-3, kLikeOutputs = 0.05;
+  if (!patched.made.functions.empty() && patched.difference > kLikeOutputs) {
+    text +=
+        "warning: the straight lines make something else of it, unless the diagram is chaotic; with more of "
+        "them it may be less\n";
+  } else if (patched.made.functions.empty() && patched.difference > kSameOutputs) {
+    text +=
+        "warning: that is more than the solver's tolerance explains, unless the diagram is chaotic or gives "
+        "its elements errors of their own, which weigh otherwise in another scale\n";
+  }
+  const std::size_t left_out = patched.published_left_out;
+  if (left_out > 0)
+    text +=
+        fmt::format("{} published value{} that set{} something of the diagram {} not taken along\n", left_out,
+                    left_out == 1 ? "" : "s", left_out == 1 ? "s" : "", left_out == 1 ? "is" : "are");
   if (!patched.failure.empty()) {
     text +=
         fmt::format("warning: on the elements of {} it does not run: {}\n", machine.title, patched.failure);
