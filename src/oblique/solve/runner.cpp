@@ -116,6 +116,7 @@ void Runner::step_to_end() {
   try {
     while (look_ahead()) pass();
     if (integration_) integration_->end(t_);
+    switching_.end(t_);
   } catch (const Interrupted&) {
     keep_statistics();
     throw;

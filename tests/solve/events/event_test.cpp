@@ -378,5 +378,40 @@ f = { type = "fg", in = "x15" })",
   }
 }
 
+// What stands at t = 0 after its events is what an integrator starts from: a store that tracks, a comparator
+// with hysteresis, a relay, a flip-flop and a pulse that begins there.
+TEST(Event, AtTheStartIsWhereStatesStartFrom) {
+  const auto result = testing::run_of(testing::Compiled(R"toml(one = { type = "constant" }
+k = { type = "constant", value = 0.7 }
+store = { type = "track-and-store", in = "k", track = "one" }
+comparator = { type = "comparator", in = "k", hysteresis = 0.1, high = 0.7 }
+relay = { type = "relay", coil = "one", make = "k" }
+flip_flop = { type = "flip-flop", set = "k" }
+pulse = { type = "pulse-train", high = 0.7, width = 0.4 }
+a = { type = "integrator", in = [], start = "store" }
+b = { type = "integrator", in = [], start = "comparator" }
+c = { type = "integrator", in = [], start = "relay" }
+d = { type = "integrator", in = [], start = "0.7*flip_flop.out" }
+e = { type = "integrator", in = [], start = "pulse" }
+)toml"));
+  for (const char* const name : {"a", "b", "c", "d", "e"})
+    EXPECT_THAT(testing::row_values(result, name), ::testing::Each(0.7)) << name;
+}
+
+// The initial value of x is the other way round only while the switch stands where it does not belong.
+TEST(Event, ASwitchMayCutACircleOfInitialValues) {
+  for (const char* const control : {"one", "-one"}) {
+    const bool on = control[0] != '-';
+    const auto result =
+        testing::run_of(testing::Compiled(fmt::format(R"toml(one = {{ type = "constant" }}
+less = {{ type = "summer", in = ["x", "-one"] }}
+back = {{ type = "electronic-switch", {} = "0.25*one", {} = "less", control = "{}" }}
+x = {{ type = "integrator", in = ["0*one"], start = "back" }}
+)toml",
+                                                      on ? "on" : "off", on ? "off" : "on", control)));
+    EXPECT_THAT(testing::row_values(result, "x"), ::testing::Each(0.25)) << control;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

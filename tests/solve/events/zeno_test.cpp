@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/solve/solve_error.h>
+
 #include "../../support/runs.h"
 
 namespace oblique::solve {
@@ -317,6 +319,37 @@ z = 0
                                       2 * first / (1 - half))))
         << tolerance;
   }
+}
+
+// A ball of two integrators under g = 2, from 1 with the restitution e, lies at rest from (1 + e)/(1 − e) on.
+// No comparator turns over there any more, and it would fall through the floor: the run ends before, or says
+// that its last turns are hidden.
+TEST(Zeno, ThatErrorsHideIsToldOf) {
+  int warned = 0;
+  for (const double e : {0.5, 0.65, 0.72, 0.735, 0.75, 0.795, 0.9, 0.93}) {
+    for (const double longer : {1.15, 1.3, 2.0}) {
+      const std::string blocks = fmt::format(R"toml(one = {{ type = "constant" }}
+hit = {{ type = "comparator", in = "-y" }}
+v = {{ type = "integrator", in = "-2*one", start = "start", set = "hit" }}
+on = {{ type = "step", at = 0.5 }}
+start = {{ type = "multiplier", in = ["-{}*v", "on"] }}
+y = {{ type = "integrator", in = "v", initial = 1 }}
+)toml",
+                                             e);
+      try {
+        const auto result = run_of(Compiled(blocks), {.until = longer * (1 + e) / (1 - e)});
+        ASSERT_EQ(result.warnings.size(), 1U) << e << ' ' << longer;
+        EXPECT_THAT(result.warnings[0].what,
+                    ::testing::StartsWith("the events of 'v' came ever faster, at last at"));
+        EXPECT_THAT(result.warnings[0].what,
+                    HasSubstr("then the errors of the states hid them, and what follows may be wrong"));
+        ++warned;
+      } catch (const SolveError& error) {
+        EXPECT_EQ(error.kind(), SolveError::Kind::chatter) << error.what();
+      }
+    }
+  }
+  EXPECT_GT(warned, 5);
 }
 
 }  // namespace

@@ -52,9 +52,13 @@ bool EventActions::is_any_to_pile_up(double t) const {
 bool EventActions::is_zeno(const Come& come, double t) {
   const network::Event& what = program_.events()[come.event];
   if (what.repeats) return false;
+  look_for_lost(come.event, t);
   const auto zeno = paces_[come.event].come(t, span_, end_);
   if (!zeno && !come.at_once) return false;
-  if (what.piling_up) return true;
+  if (what.piling_up) {
+    piled_up_ = t;
+    return true;
+  }
   if (!come.at_once && is_any_to_pile_up(t)) return false;
   const std::string told =
       zeno
@@ -69,6 +73,29 @@ bool EventActions::is_zeno(const Come& come, double t) {
                     {},
                     "end the run before, or tell the block what happens there: 'piling_up' beside 'set' in "
                     "its [[events]]"});
+}
+
+/// What piles up goes on to, until nobody can tell one event from the next: where it had not come again at t,
+/// long after, it has been lost in the errors of the states.
+void EventActions::look_for_lost(std::size_t event, double t) {
+  constexpr double kLong = 10;  // times as long as it would have taken
+  const EventPace& pace = paces_[event];
+  if (told_of_lost_ || !pace.due || piled_up_ >= pace.last || !sets_states(program_.events()[event]) ||
+      !(t > *pace.due + kLong * (*pace.due - pace.last)))
+    return;
+  told_of_lost_ = true;
+  log_.warn({{file_, {}},
+             fmt::format(
+                 "the events of '{}' came ever faster, at last at t = {:.9g} s after {:.3g} s, to pile "
+                 "up at t = {:.9g} s; then the errors of the states hid them, and what follows may be wrong",
+                 program_.events()[event].block, pace.last, pace.interval.value_or(0), *pace.due),
+             {},
+             "end the run before, or tell the block what happens there: 'piling_up' beside 'set' in its "
+             "[[events]]"});
+}
+
+void EventActions::end(double t) {
+  for (std::size_t e = 0; e < paces_.size(); ++e) look_for_lost(e, t);
 }
 
 /// Whether the condition of an event that came at this instant holds because what it set leads back to it: it

@@ -48,6 +48,9 @@ class EventActions {
   /// while `starting` only those that come at a start. Nothing where there are none. Throws SolveError.
   std::optional<Effect> serve(double t, std::vector<double>& x, bool starting);
 
+  /// The run ends at t: tells of events that came ever faster, and then no more.
+  void end(double t);
+
   /// Whether the condition of each event held when it was last looked at: what must be kept to go on later.
   const std::vector<bool>& conditions() const { return held_; }
   void restore(std::vector<bool> conditions) { held_ = std::move(conditions); }
@@ -67,6 +70,7 @@ class EventActions {
   bool comes_at_once(std::size_t event, double t, std::span<const double> x);
   bool is_any_to_pile_up(double t) const;
   bool is_zeno(const Come& come, double t);
+  void look_for_lost(std::size_t event, double t);
   void add_changes(std::size_t event, const network::SignalEvaluation& here, double t,
                    std::vector<Change>& changes) const;
 
@@ -83,6 +87,8 @@ class EventActions {
   std::vector<bool> came_;  ///< of each event that sets states: whether it came at this instant
   bool jumped_ = false;     ///< whether states have at this instant, by what events set
   std::vector<EventPace> paces_;
+  bool told_of_lost_ = false;
+  double piled_up_ = -std::numeric_limits<double>::infinity();  ///< when one last went over into another [s]
   UncertainReadings uncertain_;
   std::vector<double> signals_;
 };

@@ -32,6 +32,13 @@ std::optional<EventPace::Zeno> EventPace::come(double t, double span, double end
   }
   const bool quick = shorter > 1 && present < kQuickly && std::abs(present - ratio) < kSameRatio * present;
   const bool many = steady && shorter >= kMostShorter && now < kZenoTime * span;
+  constexpr double kSoon = 1e-2;  // of the run
+  const bool comes_faster = steady && shorter >= kMostShorter && left < kSoon * span;
+  if (comes_faster) {
+    due = t + left;
+  } else if (due && t > *due) {
+    due.reset();  // it goes on coming
+  }
   ratio = present;
   if ((many || quick) && left < kZenoTime * span && t + left < end) return Zeno{now, t + left};
   last = t;

@@ -20,6 +20,9 @@ struct EventPace {
   std::optional<double> longer;
   double approach = 0;
   bool steady = false;
+  /// By when it was to come infinitely often when it last had long come ever faster [s]; nothing once it
+  /// has come later.
+  std::optional<double> due;
 
   /// The event comes at t in a run as long as `span` that ends at `end` [s]. Its interval [s] where
   /// it comes infinitely often before that end, and by when [s]; this one is then not counted.

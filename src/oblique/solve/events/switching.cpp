@@ -49,11 +49,25 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
   const bool any_start =
       std::any_of(program_.states().begin(), program_.states().end(),
                   [](const network::State& state) { return state.start_node.has_value(); });
-  bool starting = true, first = true, has_gone = false;
+  // States take their starts again from what events change at this instant, until one sets states itself.
+  bool starting = true, takes = any_start, first = true, has_gone = false;
+  const auto take = [&] {
+    const std::vector<double> before = x;
+    try {
+      take_starts(program_, workspace_, t, x, log_, file_);
+    } catch (const SolveError& failure) {
+      // A circle may be cut by a switch that does not stand where it belongs yet.
+      if (!first || !active() || failure.kind() != SolveError::Kind::no_rest) throw;
+      x = before;
+      settling_.settle(t, x);
+      settling_.begin();
+      take_starts(program_, workspace_, t, x, log_, file_);
+    }
+  };
   const auto goes_on = [&] {
     settling_.begin();
-    if (starting && any_start) take_starts(program_, workspace_, t, x, log_, file_);
-    if (active() && settling_.settle(t, x) && starting && any_start) return true;
+    if (takes) take();
+    if (active() && settling_.settle(t, x) && takes) return true;
     if (!first || !rests_within_limits(program_, workspace_, event_functions_, location_.announced(), t, x,
                                        bring_to_rest))
       bring_to_rest();
@@ -62,6 +76,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (active() && settling_.settle(t, x)) return true;
     const auto effect = active() ? serve_events(t, x, starting) : std::nullopt;
     starting = starting && (!effect || effect->tables);
+    takes = takes && (!effect || !effect->sets_states);
     if (effect) return true;
     return std::exchange(loops_go, false) && !slide_.active() && loop_jumps_.settle(t, x);
   };

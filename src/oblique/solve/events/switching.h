@@ -118,6 +118,8 @@ class Switching {
   void know_states(std::span<const double> reach) { event_functions_.know_states(reach); }
   /// Where the run ends [s]: what would come later is not told of.
   void end_at(double t) { actions_.end_at(t); }
+  /// The run has ended at t.
+  void end(double t) { actions_.end(t); }
 
   bool slides() const { return slide_.active(); }
   const network::Workspace& workspace() const { return workspace_; }
