@@ -50,8 +50,8 @@ s = { type = "sign", in = "x" }
   }
 }
 
-// A solver of stiff equations may leave a decay on the other side of zero, by less than its error when that was
-// larger: it goes on decaying there, through whatever else happens.
+// A solver of stiff equations may leave a decay on the other side of zero, by less than its error when that
+// was larger: it goes on decaying there, through whatever else happens.
 TEST(ResumedSwitch, OfADecayMayLieOnTheOtherSide) {
   const testing::Compiled made(R"(
 x = { type = "transfer-lag", in = "-2*x", time_constant = 0.09375, initial = 0.375 }
