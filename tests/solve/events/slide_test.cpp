@@ -304,5 +304,30 @@ TEST(Slides, EventsThatSetEachOtherOffAreEndedByName) {
   EXPECT_THAT(message, HasSubstr("switches without end at t = 0"));
 }
 
+// x slides along zero, and c is high two fifths of the time: an integrator in hold for that long has the mean
+// slope, but one that c puts back to its initial value at once would never leave it, which is told.
+TEST(Slide, OfAModeLineIsToldOfWhereItResets) {
+  for (const char* const line : {"hold", "initial"}) {
+    const auto result = testing::run_of(
+        testing::Compiled(R"toml(one = { type = "constant" }
+c = { type = "comparator", in = "x" }
+x = { type = "integrator", in = ["0.4*one", "-c"], initial = 0.3 }
+y = { type = "integrator", in = ["one"] }
+)toml",
+                          fmt::format("[groups]\ng = {{ blocks = [\"y\"], {} = \"c\" }}\n", line)),
+        {.until = 2});
+    if (std::string_view(line) == "hold") {
+      EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+      EXPECT_NEAR(testing::row_values(result, "y").back(), 0.6 * 1.5, 1e-6);
+    } else {
+      ASSERT_EQ(result.warnings.size(), 1U);
+      EXPECT_THAT(
+          result.warnings[0].what,
+          ::testing::StartsWith("'group g' (c > 0.5) depends on 'c', which slides along its switching "
+                                "surface from t = 0.5"));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

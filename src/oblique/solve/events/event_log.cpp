@@ -202,12 +202,15 @@ void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
     const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
       return warning.what.substr(0, warning.what.find(kWhen)) == what.substr(0, what.find(kWhen));
     });
+    if (told) continue;
     const bool acts =
         std::any_of(program_.events().begin(), program_.events().end(), [&](const network::Event& event) {
-          return event.block == follower.block && !event.repeats;  // a table goes along on both sides
+          if (event.repeats) return false;  // a table goes along on both sides
+          if (event.block == follower.block) return true;
+          const auto read = program_.switch_structure().positions_in(event.condition);
+          return std::binary_search(read.begin(), read.end(), s);
         });
-    if (acts && !told)
-      warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
+    if (acts) warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
   }
 }
 

@@ -178,3 +178,19 @@ def turbulent_pipe_by_an_amplifier():
 
 def angle_from_row_to_row():
     return {f"angle at {t}": np.arcsin(0.95 * np.sin(5 * t)) for t in (1, 7, 10)}
+
+
+def tank_with_a_float():
+    """The valve moves where the float, which follows in 2 s, comes to 0.6 or 0.3; dry and closed, h stays at 0."""
+    motion, valve, dry = Motion([0.5, 0.5]), 1, False
+    while motion.t < 50:
+        flow = lambda t, y: [0 if dry else 1.08 * valve - np.sqrt(max(y[0], 0)), (y[0] - y[1]) / 2]
+        guards = [(lambda t, y: y[1] - 0.6, 1) if valve else (lambda t, y: y[1] - 0.3, -1)]
+        if not valve and not dry:
+            guards.append((lambda t, y: y[0], -1))
+        hit = motion.go(flow, 50, guards, max_step=0.05)
+        if hit == 0:
+            valve, dry = 1 - valve, False
+        elif hit == 1:
+            dry, motion.y[0] = True, 0
+    return {f"{name} at {t}": motion(t)[k] for t in (3.1, 8, 20) for k, name in enumerate("hf")} | {"f at 50": motion(50)[1]}
