@@ -180,6 +180,32 @@ TEST(Sensitivities, OfWhatAnEventSets) {
   expect_column(run, "d(x)/d(x.level)", kTolerance, [&](double t) { return -n(t); });
 }
 
+// A delay line takes its first sample, and sets when the next one is to come, where the run starts: the k-th
+// of t comes at k D/5, and leaves after D more. (Not in the rows in which it comes, at which it jumps.)
+TEST(Sensitivities, OfWhatAnEventSetsAtTheStart) {
+  const Compiled made(
+      "one = { type = \"constant\" }\nx = { type = \"integrator\", in = \"one\" }\n"
+      "y = { type = \"delay-line\", in = \"x\", delay = 0.52, stages = 5 }\n");
+  const auto run = differentiated(made, {"y.delay"});
+  const double stage = 0.52 / 5;
+  expect_column(run, "y", kTolerance,
+                [&](double t) { return std::max(0.0, std::floor(t / stage) - 5) * stage; });
+  expect_column(run, "d(y)/d(y.delay)", kTolerance,
+                [&](double t) { return std::max(0.0, std::floor(t / stage) - 5) / 5; });
+}
+
+// With a later pulse x would begin later, and with an earlier one its begin would lie before the run.
+TEST(Sensitivities, RefuseWhatTurnsOverJustAtTheStart) {
+  const Compiled made(
+      "p = { type = \"pulse-train\", period = 1, width = 0.3 }\n"
+      "x = { type = \"transfer-lag\", in = \"p\", time_constant = 0.5 }\n");
+  EXPECT_THAT(
+      refusal(made, "p.delay"),
+      HasSubstr("'delay + n*period > time' of block 'p' lies at its switching point where the run starts, "
+                "and with another parameter it would not"));
+  EXPECT_EQ(refusal(made, "p.width"), "");
+}
+
 TEST(Sensitivities, RefuseWhatTheyDoNotKnow) {
   const Compiled made(
       "b = { type = \"constant\", value = 0.5 }\n"

@@ -215,12 +215,15 @@ void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
 }
 
 SolveError EventLog::endless(const std::string& block, const std::string& what, double t) const {
-  return {SolveError::Kind::chatter,
-          t,
-          {{file_, {}},
-           fmt::format("'{}' switches without end at t = {:.9g} s ({})", block, t, what),
-           {},
-           "give the switch a hysteresis, or end what it repeats before it becomes endlessly fast"}};
+  return {
+      SolveError::Kind::chatter,
+      t,
+      {{file_, {}},
+       fmt::format("{} without end at t = {:.9g} s ({})",
+                   block.empty() ? "its switches turn over" : fmt::format("'{}' switches", block), t, what),
+       {},
+       "give the switch a hysteresis, or a larger one, or an ideal amplifier in its loop a finite gain and "
+       "bandwidth"}};
 }
 
 SolveError EventLog::piled_up(const std::string& block, const std::string& comparison, double at,

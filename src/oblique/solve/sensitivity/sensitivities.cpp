@@ -235,6 +235,8 @@ void Sensitivities::start(double t, std::span<const double> x, const network::Wo
                           bool from_state) {
   load(run);
   if (from_state) return;
+  start_memories(t, x, run);
+  refuse_turns_at_start(t, x);
   const auto n = static_cast<Eigen::Index>(run_states_.size());
   const std::vector<double> starts = program_->start();
   evaluate_or_refuse(t, x, {});
@@ -293,6 +295,59 @@ void Sensitivities::start(double t, std::span<const double> x, const network::Wo
     if (!s.allFinite()) refuse(t, "the rest from which the run starts is singular");
     for (Eigen::Index i = 0; i < n; ++i) states_[k][static_cast<std::size_t>(i)] = s(i);
   }
+}
+
+/// What events have set where the run starts, from what the memories were before them.
+void Sensitivities::start_memories(double t, std::span<const double> x, const network::Workspace& run) {
+  const std::vector<double> now = discrete_states_;
+  const network::Workspace fresh(*program_);
+  const std::vector<bool> positions = are_positions();
+  for (std::size_t m = 0; m < n_discrete_states_; ++m) {
+    if (!positions[m]) discrete_states_[m] = fresh.discrete_state(static_cast<std::uint32_t>(m));
+  }
+  before_.x.assign(x.begin(), x.end());
+  std::vector<std::vector<double>> memories = memories_;
+  for (std::size_t m = 0; m < n_discrete_states_; ++m) {
+    if (now[m] == discrete_states_[m]) continue;
+    const auto action = matching_action(t, false, m, now[m]);
+    const bool is_logic = now[m] == 0 || now[m] == 1;
+    if (!action && is_logic) continue;
+    if (!action)
+      refuse(t, "several events one after the other have set a discrete state where the run starts");
+    for (std::size_t k = 0; k < count(); ++k) {
+      evaluate_or_refuse(t, x, {0, {}, k});
+      memories[k][m] = values_[*action + 1];
+    }
+  }
+  memories_ = std::move(memories);
+  load(run);
+}
+
+/// What turns over just where the run starts would do so later with a parameter on one side of its value, and
+/// with one on the other have done so before.
+void Sensitivities::refuse_turns_at_start(double t, std::span<const double> x) {
+  evaluate_or_refuse(t, x, {});
+  std::vector<std::size_t> at_zero;
+  for (std::size_t w = 0; w < run_switches_.size(); ++w) {
+    if (values_[layout_.event_values + w] == 0) at_zero.push_back(w);
+  }
+  for (std::size_t k = 0; !at_zero.empty() && k < count(); ++k) {
+    evaluate_or_refuse(t, x, {0, {}, k});
+    for (const std::size_t w : at_zero) {
+      if (values_[layout_.event_functions + w] == 0) continue;
+      refuse(t, fmt::format(
+                    "'{}' of block '{}' lies at its switching point where the run starts, and with another "
+                    "parameter it would not",
+                    run_switches_[w].comparison, run_switches_[w].block));
+    }
+  }
+}
+
+std::vector<bool> Sensitivities::are_positions() const {
+  std::vector<bool> found(n_discrete_states_, false);
+  for (const network::Switch& s : run_switches_) found[s.discrete_state] = true;
+  for (const std::uint32_t mode : mode_states_) found[mode] = true;
+  return found;
 }
 
 void Sensitivities::before_event(double t, std::span<const double> x, std::vector<std::vector<double>> s) {
@@ -384,9 +439,7 @@ void Sensitivities::after_event(double t, std::span<const double> x, const netwo
       refuse(t, fmt::format("several events one after the other have set '{}'", run_states_[i].name));
     set_states.push_back({i, *action});
   }
-  std::vector<bool> is_position(n_discrete_states_, false);
-  for (const network::Switch& s : run_switches_) is_position[s.discrete_state] = true;
-  for (const std::uint32_t mode : mode_states_) is_position[mode] = true;
+  const std::vector<bool> is_position = are_positions();
   for (std::size_t m = 0; m < n_discrete_states_; ++m) {
     if (is_position[m] || discrete_states[m] == discrete_states_[m]) continue;
     const auto action = matching_action(t, false, m, discrete_states[m]);
