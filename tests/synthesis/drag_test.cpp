@@ -193,6 +193,13 @@ TEST(Drag, ChangesTheSidesOfATriangle) {
   const Case again(after.text, 0.5);
   EXPECT_LT((again.place("F") - before.place("F") - Vector2d(0.1, 0.2)).norm(), 3e-4);
   EXPECT_LT((again.place("C") - before.place("C")).norm(), 1e-9);
+  ASSERT_EQ(after.numbers.size(), 2U);
+  EXPECT_EQ(after.numbers[0].name, "BCF.sides.2");  // C–F
+  EXPECT_NEAR(after.numbers[0].before, 2, 1e-12);
+  EXPECT_NEAR(after.numbers[0].after, (before.place("F") + Vector2d(0.1, 0.2) - before.place("C")).norm(),
+              1e-4);
+  EXPECT_EQ(after.numbers[1].name, "BCF.sides.3");  // B–F
+  EXPECT_NEAR(after.numbers[1].before, 2.5, 1e-12);
   const Vector2d over = before.place("C") - before.place("F") + Vector2d(0.3, -1);
   EXPECT_EQ(message_of([&] { before.dragged("F", over); }),
             "m.toml: 'F' cannot be dragged there: the triangle of body 'BCF' would turn over\n"
@@ -279,6 +286,11 @@ TEST_P(Shipped, PointsComeToWhereTheyAreDragged) {
     try {
       const DraggedMechanism after = before.dragged(point.name, Vector2d(0.008, 0.006) * size);
       ++moved;
+      const std::size_t place = before.mechanism.find_point(point.name).value();
+      if (!after.there.points.empty()) {
+        EXPECT_EQ(after.there.points[place].position, after.place) << point.name;
+      }
+      EXPECT_EQ(after.there.points.empty(), before.mechanism.drives.empty()) << point.name;
       EXPECT_EQ(without_numbers(after.text), without_numbers(text)) << point.name;
       const double drive = after.drive - before.mechanism.drives.front().start;
       const bool crank = std::abs(drive) > 1e-12;
