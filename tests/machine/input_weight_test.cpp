@@ -55,6 +55,10 @@ TEST(ChooseRate, TakesTheLeastTimeFactorAtWhichOneInputSuffices) {
   EXPECT_DOUBLE_EQ(choose_rate(700, 1, {}, kGains), 100);
   EXPECT_DOUBLE_EQ(choose_rate(1000 * (1 + 1e-15), 1, {}, kGains), 100);  // rounding asks for no more
   EXPECT_DOUBLE_EQ(choose_rate(1001, 1, {}, kGains), 1000);
+  EXPECT_EQ(choose_rate(201, 20000, {}, kGains), 20000);
+  EXPECT_DOUBLE_EQ(choose_rate(199, 20000, {}, kGains), 100);  // settings of a hundredth
+  EXPECT_DOUBLE_EQ(choose_rate(1e-4, 20000, {}, kGains), 1);
+  EXPECT_EQ(choose_rate(1e-4, 1, {}, kGains), 1);
 }
 
 }  // namespace

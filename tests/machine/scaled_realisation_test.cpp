@@ -100,6 +100,17 @@ TEST(ScaledRealisation, SlowsAndHastensTimeAsTheIntegratorsAsk) {
     const solve::Trajectory run = trajectory_of(made.diagram);
     EXPECT_NEAR(run.at(run.rows() / 2, 1), std::exp(-1), 1e-7);
   }
+  // Of time factors that are not published 1/s is taken for one, unless all is slower than a hundredth of it.
+  diagram::MachineProfile unknown = inverting_machine();
+  unknown.rates.clear();
+  for (const auto& [rate, time] :
+       {std::pair("3000", 1.0), {"2", 1.0}, {"0.02", 1.0}, {"0.003", 0.02}, {"2e-5", 2e-4}}) {
+    const ScaledRealisation made = realise_scaled(decay(rate), shipped_blocks(), unknown);
+    EXPECT_EQ(made.time, time) << rate;
+    const std::string written = diagram::write_diagram(made.diagram);
+    EXPECT_EQ(written.find("rate = "), rate[0] == '3' ? written.find("rate = 1000") : std::string::npos)
+        << written;
+  }
   ScalingOptions asked;
   asked.time = 25;
   EXPECT_EQ(realise_scaled(decay("2"), shipped_blocks(), machine_of_rate(1), asked).time, 25);

@@ -202,13 +202,19 @@ class Chooser {
   }
 
   double choose_time() const {
-    if (machine_.rates.empty()) return 1;
     std::vector<std::vector<double>> speeds;  // of each integrator
     for (std::size_t e = 0; e < elements_.size(); ++e) {
       if (elements_[e].role == Role::integrator) speeds.push_back(speeds_of(e));
       if (!speeds.empty() && speeds.back().empty()) speeds.pop_back();
     }
     if (speeds.empty()) return 1;
+    // Where the time factors are not published, k0 = 1/s is taken for one of them, and what is a hundred
+    // times slower for too slow.
+    constexpr double kSlow = 0.01;
+    const bool is_slow = std::all_of(speeds.begin(), speeds.end(), [](const std::vector<double>& of_one) {
+      return *std::max_element(of_one.begin(), of_one.end()) < kSlow;
+    });
+    if (machine_.rates.empty() && !is_slow) return 1;
     double best = 1, least_cost = std::numeric_limits<double>::infinity();
     constexpr int kDecades = 12;
     for (int decade = -kDecades; decade <= kDecades; ++decade) {
@@ -230,7 +236,8 @@ class Chooser {
   /// counts so much that it never is where that can be; and then how far the time is from the diagram's.
   double cost_of(double time, const std::vector<std::vector<double>>& speeds) const {
     constexpr double kTooLarge = 1e6, kAway = 0.02, kLeastSetting = 0.1, kRounding = 1 + 1e-9;
-    const double most = machine_.rates.back() * greatest_gain() * kRounding;
+    const std::vector<double> rates = machine_.rates.empty() ? std::vector<double>{1} : machine_.rates;
+    const double most = rates.back() * greatest_gain() * kRounding;
     const double least =
         (machine_.input_gains.empty() ? 1 : machine_.input_gains.front()) * kLeastSetting / kRounding;
     double cost = kAway * std::abs(std::log10(time));
@@ -238,7 +245,7 @@ class Chooser {
       const double largest = *std::max_element(of_one.begin(), of_one.end()) / time;
       cost += kTooLarge * std::max(0.0, std::log10(largest / most));
       cost += std::max(0.0, std::log10(largest / quick_));
-      const double rate = choose_rate(std::min(largest, most), 1, machine_.rates, machine_.input_gains);
+      const double rate = choose_rate(std::min(largest, most), 1, rates, machine_.input_gains);
       for (const double speed : of_one) cost += std::max(0.0, std::log10(least * rate * time / speed));
     }
     return cost;

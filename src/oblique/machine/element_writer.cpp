@@ -193,6 +193,7 @@ class Writer {
         continue;
       }
       if (element.role == Role::integrator && parameter.name == "rate") continue;
+      if (parameter.name == "noise_bandwidth" && is_quiet(block)) continue;  // the scale of time has moved it
       if (starts_by_wire && parameter.name == "initial") continue;
       const bool loop =
           element.role == Role::open_amplifier && (parameter.name == "gain" || parameter.name == "bandwidth");
@@ -203,6 +204,11 @@ class Writer {
       if (loop || value != element.definition->parameters[*written].default_value)
         settings.push_back(diagram::number_setting(parameter.name, value));
     }
+  }
+
+  static bool is_quiet(const diagram::FlatBlock& block) {
+    const auto noise = block.definition->find_parameter("noise");
+    return noise && block.parameters[*noise] == 0;
   }
 
   bool machine_states_gain(const diagram::BlockDefinition& amplifier) const {

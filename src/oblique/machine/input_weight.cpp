@@ -29,7 +29,10 @@ double choose_rate(double largest, double own, std::span<const double> rates, st
   const auto suffices = [&](double rate) { return largest <= rate * most * (1 + kRounding); };
   const auto found = std::find_if(rates.begin(), rates.end(), suffices);
   if (found != rates.end()) return *found;
-  return suffices(own) ? own : std::pow(10, std::ceil(std::log10(largest / most * (1 - kRounding))));
+  constexpr double kSmall = 0.01;  // of an input: a setting that is hardly one
+  if (suffices(own) && (own <= 1 || largest >= kSmall * own)) return own;
+  const double least = std::pow(10, std::ceil(std::log10(largest / most * (1 - kRounding))));
+  return suffices(own) ? std::max(1.0, least) : least;
 }
 
 }  // namespace oblique::machine
