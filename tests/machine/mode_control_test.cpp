@@ -232,7 +232,8 @@ TEST(Modes, OfAStoreThatIsChargedToSomethingElseAreRefused) {
   EXPECT_THAT(
       message(", track = \"c\"", machine_of_one_mode()),
       HasSubstr("the machine Desk has one mode for all its integrators, and the integrators of 's' have "
-                "modes of their own"));
+                "modes of their own; expected one mode for all at any time\n"
+                "  remedy: choose another machine: a store is an integrator that has modes of its own"));
 }
 
 // A timeline alone is what any machine has: its integrators change their mode together.

@@ -68,6 +68,11 @@ TEST(JudgementText, WarnsOfOutputsThatAreSomethingElse) {
             "warning: the straight lines make something else of it, unless the diagram is chaotic; with more "
             "of them "
             "it may be less\n");
+  patched.given_up = true;
+  EXPECT_THAT(warning(),
+              ::testing::EndsWith("warning: on the elements of EAI PACE TR-48 (1961) its run takes more than "
+                                  "200000 steps, and was given up: whether signals leave the machine unit "
+                                  "there is not told; oblique run tells\n"));
   patched.published_left_out = 1;
   EXPECT_THAT(
       machine_text(patched, machine),

@@ -207,7 +207,8 @@ DiagramOnMachine put_on_machine(const diagram::Diagram& diagram, const diagram::
     fit_room(scaling, result);
     find_overloads(diagram::without_saturation(diagram::flatten(result.made.diagram, library)), result);
   } catch (const solve::SolveError& error) {
-    find_end(error, library, result);
+    result.given_up = error.kind() == solve::SolveError::Kind::step_budget;
+    if (!result.given_up) find_end(error, library, result);
   }
   if (diagram.published) {
     const auto& values = diagram.published->values;

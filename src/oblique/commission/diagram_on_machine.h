@@ -25,11 +25,13 @@ struct DiagramOnMachine {
   };
   std::vector<Overload> overloads;  ///< on the machine's elements, the largest first
   std::string failure;              ///< why it does not run there, or empty
+  bool given_up = false;            ///< the run there took too many steps, and tells no overloads
 };
 
 /// Puts any diagram onto a machine: realises and scales it (`machine::MachineScaling`), slows its servo
 /// amplifiers by the least step of 1, 2, 5 times a power of ten with which their loops are well damped, or at
-/// least stable, on the machine's elements, and makes room where these drive signals over the machine unit.
+/// least stable, on the machine's elements, and makes room where these drive signals over the machine unit,
+/// as far as 200 000 steps of the solver lead there.
 /// Throws as MachineScaling.
 DiagramOnMachine put_on_machine(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                                 const diagram::MachineProfile& machine,

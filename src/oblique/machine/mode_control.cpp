@@ -223,7 +223,8 @@ std::optional<bool> has_mode_groups(const diagram::MachineProfile& machine) {
 void prepare_modes(diagram::FlatDiagram& flat, const diagram::FlatDiagram& own,
                    const diagram::BlockLibrary& library, const diagram::MachineProfile& machine) {
   std::vector<std::string> sources;
-  if (!flat.timeline.groups.empty()) sources = keep_operating(flat, own);
+  const bool has_groups = !flat.timeline.groups.empty();
+  if (has_groups) sources = keep_operating(flat, own);
   make_stores(flat, library);
   if (flat.timeline.groups.empty()) return;
   if (has_mode_groups(machine) == std::optional(false) && flat.timeline.groups.size() > 1) {
@@ -238,7 +239,8 @@ void prepare_modes(diagram::FlatDiagram& flat, const diagram::FlatDiagram& own,
         {flat.file, {}},
         fmt::format("the machine {} has one mode for all its integrators, and {}", machine.title, why),
         "one mode for all at any time",
-        "choose another machine, or take [groups] or the [timeline] out"});
+        has_groups ? "choose another machine, or take [groups] or the [timeline] out"
+                   : "choose another machine: a store is an integrator that has modes of its own"});
   }
   wire_mode_lines(flat, library);
 }
