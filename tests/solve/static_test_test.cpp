@@ -36,16 +36,18 @@ xv  = { type = "multiplier", in = ["x", "v"] }
   EXPECT_FALSE(reading(readings, "x").at_rest);
 }
 
-// In initial condition a capacitor is charged, however long that takes, in groups too that do not start there.
+// In initial condition a capacitor is charged, however long that takes, in groups too that do not start
+// there.
 TEST(StaticTest, ChargesEveryCapacitor) {
-  const Compiled made(R"toml(one = { type = "constant" }
+  const Compiled made(
+      R"toml(one = { type = "constant" }
 up = { type = "comparator", in = ["x", "-one"] }
 x = { type = "integrator", in = ["-2*x"], initial = 0.5 }
 y = { type = "integrator", in = ["3*one"], start = "x", initial = 0.25, charging = 0.01 }
 z = { type = "integrator", in = [], start = "-x", charging = 0.01 }
 )toml",
-                      "[timeline]\nphases = [{ mode = \"initial\", for = 0.2 }, { mode = \"operate\", for = 0.8 }]\n"
-                      "[groups]\ng = { blocks = [\"z\"], initial = \"up\" }\n");
+      "[timeline]\nphases = [{ mode = \"initial\", for = 0.2 }, { mode = \"operate\", for = 0.8 }]\n"
+      "[groups]\ng = { blocks = [\"z\"], initial = \"up\" }\n");
   const auto readings = static_test(made.program, "d.toml");
   EXPECT_EQ(reading(readings, "y").output, 0.75);
   EXPECT_EQ(reading(readings, "y").derivative, 3);

@@ -43,9 +43,10 @@ bool runs_away(const LoopCode& loop, const double* slots, LoopMatrix& matrix) {
 /// unknown is then zero.
 bool is_root_of_nothing(const LoopCode& loop, std::span<const Instruction> body, double* slots,
                         double origin) {
-  constexpr double kNothing = 1e-8;  // [machine unit]: a hundred absolute tolerances of a run that asks for none
-  constexpr double kNear = 0.05;      // [machine unit]
-  constexpr double kBeside = 1e-6;    // [machine unit]: where the bend of the equation is looked at
+  constexpr double kNothing =
+      1e-8;                       // [machine unit]: a hundred absolute tolerances of a run that asks for none
+  constexpr double kNear = 0.05;  // [machine unit]
+  constexpr double kBeside = 1e-6;  // [machine unit]: where the bend of the equation is looked at
   if (loop.size() != 1 || !(std::abs(origin) < kNear)) return false;
   const auto slope_at = [&](double z) {
     slots[loop.unknown_slots[0]] = z;
