@@ -101,8 +101,7 @@ std::string machine_text(const commission::DiagramOnMachine& patched,
   } else if (patched.given_up) {
     text += fmt::format(
         "warning: on the elements of {} its run takes more than 200000 steps, and was given up: whether "
-        "signals leave "
-        "the machine unit there is not told; oblique run tells\n",
+        "signals leave the machine unit there is not told\n",
         machine.title);
   } else if (!patched.overloads.empty()) {
     text += fmt::format("warning: on the elements of {} '{}' goes {:.2g} % beyond the machine unit\n",
