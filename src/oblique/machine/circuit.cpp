@@ -53,6 +53,7 @@ class Reducer {
   struct Block {
     State state = State::untouched;
     CircuitTerm value;  ///< of a reduced or kept block's first output
+    std::optional<bool> gives_nothing;
   };
   /// A product of two weighted signals, in any order.
   using Factor = std::tuple<std::size_t, std::size_t, double>;
@@ -128,16 +129,22 @@ class Reducer {
   }
 
   /// Whether an input gets nothing at all, by its wires alone.
-  bool is_nothing(const diagram::FlatInput& input, int depth = 0) const {
-    constexpr int kDeepest = 20;  // a ring of summers gives nothing, too, but is left to them
-    return input.constant == 0 && depth < kDeepest &&
+  bool is_nothing(const diagram::FlatInput& input) {
+    return input.constant == 0 &&
            std::all_of(input.terms.begin(), input.terms.end(), [&](const diagram::FlatTerm& term) {
-             return term.weight == 0 || gives_nothing(flat_.blocks[term.signal.block], depth + 1);
+             return term.weight == 0 || gives_nothing(term.signal.block);
            });
   }
 
-  bool gives_nothing(const diagram::FlatBlock& block, int depth) const {
-    const auto is_none = [&](const diagram::FlatInput& input) { return is_nothing(input, depth); };
+  bool gives_nothing(std::size_t index) {
+    std::optional<bool>& known = blocks_[index].gives_nothing;
+    if (known) return *known;
+    known = false;  // a ring of summers gives nothing, too, but is left to them
+    return *(known = inputs_give_nothing(flat_.blocks[index]));
+  }
+
+  bool inputs_give_nothing(const diagram::FlatBlock& block) {
+    const auto is_none = [&](const diagram::FlatInput& input) { return is_nothing(input); };
     switch (block.definition->role) {
       case Role::reference:
         return parameter_of(block, "value") == 0;
@@ -157,7 +164,7 @@ class Reducer {
 
   std::optional<CircuitTerm> product(std::size_t index) {
     // The other factor may be needed by nothing else.
-    if (gives_nothing(flat_.blocks[index], 0)) return CircuitTerm{0, std::nullopt};
+    if (gives_nothing(index)) return CircuitTerm{0, std::nullopt};
     const auto [x, y] = factors(flat_.blocks[index]);
     const auto a = single(x, 1), b = single(y, 1);
     if (!a || !b) return std::nullopt;

@@ -49,50 +49,41 @@ Eigen::VectorXd directions_of(const network::Program& program, std::size_t loop)
   return directions;
 }
 
-}  // namespace
-
-LoopSwitches switches_on(const network::Program& program, std::size_t loop) {
-  LoopSwitches found;
+/// What turns over with the unknowns of an algebraic loop, and acts on it.
+std::vector<std::uint32_t> switches_on(const network::Program& program, std::size_t loop) {
+  std::vector<std::uint32_t> found;
   const std::vector<bool> follows = program.switch_structure().followers_of_loop(loop);
   const std::vector<bool> acts = program.switch_structure().discrete_states_below_loop(loop);
   for (std::uint32_t s = 0; s < follows.size(); ++s) {
     const network::Switch& made = program.switches()[s];
     if (!follows[s] || made.rate) continue;
-    const auto segment = made.moves_along
-                             ? std::optional(program.events()[*made.moves_along].actions.front().index)
-                             : std::nullopt;
-    if (!acts[segment.value_or(made.discrete_state)]) continue;
-    found.switches.push_back(s);
-    found.discrete_states.push_back(made.discrete_state);
-    if (!segment) continue;
-    found.tables.push_back(*made.moves_along);
-    found.discrete_states.push_back(*segment);
+    const std::uint32_t acting =
+        made.moves_along ? program.events()[*made.moves_along].actions.front().index : made.discrete_state;
+    if (acts[acting]) found.push_back(s);
   }
   return found;
 }
+
+}  // namespace
 
 bool may_have_several(const network::Program& program, std::size_t loop) {
   const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
   return std::all_of(unknowns.begin(), unknowns.end(),
                      [&](std::size_t u) { return program.unknowns()[u].torn; }) &&
-         (!program.loop_is_linear(loop) ||
-          (is_small(program, loop) && !switches_on(program, loop).switches.empty()));
+         (!program.loop_is_linear(loop) || (is_small(program, loop) && !switches_on(program, loop).empty()));
 }
 
 LoopJumps::LoopJumps(const network::Program& program, network::Workspace& workspace,
                      const Thresholds& thresholds)
-    : program_(program),
-      workspace_(workspace),
-      thresholds_(thresholds),
-      event_functions_(program.switches().size()),
-      signals_(program.n_signals()) {
+    : program_(program), workspace_(workspace), thresholds_(thresholds), signals_(program.n_signals()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    Watched watched{switches_on(program, loop), loop, directions_of(program, loop)};
+    Watched watched{loop, SwitchPlacing(program, switches_on(program, loop)), directions_of(program, loop)};
     // Of linear equations that nothing changes on the way there is one solution.
-    if (watched.directions.size() == 0 || (program.loop_is_linear(loop) && watched.switches.empty()))
+    if (watched.directions.size() == 0 ||
+        (program.loop_is_linear(loop) && watched.placing.switches().empty()))
       continue;
     watched.blind = watched.directions.minCoeff() > 0;
-    watched.goes = watched.blind || !watched.switches.empty();
+    watched.goes = watched.blind || !watched.placing.switches().empty();
     any_goes_ = any_goes_ || watched.goes;
     watched_.push_back(std::move(watched));
   }
@@ -126,17 +117,17 @@ void LoopJumps::note(double t, std::span<const double> x) {
 
 void LoopJumps::place(std::size_t loop, const std::vector<double>& unknowns, double t,
                       std::span<const double> x) {
-  for (const Watched& watched : watched_) {
+  for (Watched& watched : watched_) {
     if (watched.loop != loop) continue;
     workspace_.hold_loop(loop, t, unknowns, true);
-    place(watched, t, x, workspace_);
+    watched.placing.place(t, x.data(), workspace_, &thresholds_);
     workspace_.hold_loop(loop, std::numeric_limits<double>::quiet_NaN(), {}, false);
   }
 }
 
 bool LoopJumps::settle(double t, std::span<const double> x) {
   bool any = false;
-  for (const Watched& watched : watched_) {
+  for (Watched& watched : watched_) {
     const auto here = watched.goes ? pull(watched, t, x, workspace_) : std::nullopt;
     if (!here) continue;
     std::vector<double> now;
@@ -151,7 +142,7 @@ bool LoopJumps::settle(double t, std::span<const double> x) {
 
 bool LoopJumps::go_from_guesses(double t, std::span<const double> x) {
   return std::any_of(watched_.begin(), watched_.end(),
-                     [&](const Watched& watched) { return go_from_before(watched, t, x); });
+                     [&](Watched& watched) { return go_from_before(watched, t, x); });
 }
 
 /// What moves the unknowns of a loop, as they are; nothing where some loop has no solution.
@@ -166,10 +157,10 @@ std::optional<LoopJumps::Pull> LoopJumps::pull(const Watched& watched, double t,
 }
 
 /// The same with its unknowns at z, whether they solve it or not, and all that hangs on them in place.
-std::optional<LoopJumps::Pull> LoopJumps::pull_at(const Watched& watched, const Eigen::VectorXd& z, double t,
+std::optional<LoopJumps::Pull> LoopJumps::pull_at(Watched& watched, const Eigen::VectorXd& z, double t,
                                                   std::span<const double> x, network::Workspace& workspace) {
   workspace.hold_loop(watched.loop, t, {z.begin(), z.end()}, true);
-  if (!place(watched, t, x, workspace)) return std::nullopt;
+  if (!watched.placing.place(t, x.data(), workspace, &thresholds_)) return std::nullopt;
   return pull(watched, t, x, workspace);
 }
 
@@ -179,38 +170,10 @@ bool LoopJumps::rests(const Watched& watched, const Eigen::MatrixXd& rates) cons
                        : amplifier_motion(program_, watched.loop, rates) != AmplifierMotion::run_away;
 }
 
-/// Puts the switches and tables of a loop where its unknowns, held, ask for them; false where they go on
-/// turning over.
-bool LoopJumps::place(const Watched& watched, double t, std::span<const double> x,
-                      network::Workspace& workspace) {
-  const std::size_t most = 2 * watched.discrete_states.size() + 2;
-  for (std::size_t round = 0; round <= most; ++round) {
-    if (!program_.event_functions(t, x.data(), event_functions_.data(), workspace)) return false;
-    bool turned = false;
-    for (const std::uint32_t s : watched.switches) {
-      if (std::abs(event_functions_[s]) <= thresholds_[s]) continue;
-      const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-      const double position = event_functions_[s] > 0 ? 1 : 0;
-      turned = turned || workspace.discrete_state(discrete_state) != position;
-      workspace.set_discrete_state(discrete_state, position);
-    }
-    const auto here = program_.signals(t, x.data(), signals_.data(), workspace);
-    if (!here) return false;
-    std::vector<std::pair<std::uint32_t, double>> segments;
-    for (const std::size_t event : watched.tables) {
-      if (here->condition(event))
-        segments.emplace_back(program_.events()[event].actions.front().index, here->action_value(event, 0));
-    }
-    for (const auto& [segment, value] : segments) workspace.set_discrete_state(segment, value);
-    if (!turned && segments.empty()) return true;
-  }
-  return false;
-}
-
 /// Lets the unknowns follow what the elements give until they rest: implicit Euler steps, short at first so
 /// that they go where the elements go, then ever longer until they are Newton's method. False where they do
 /// not come to rest.
-bool LoopJumps::follow(const Watched& watched, Eigen::VectorXd& z, double t, std::span<const double> x,
+bool LoopJumps::follow(Watched& watched, Eigen::VectorXd& z, double t, std::span<const double> x,
                        network::Workspace& workspace) {
   constexpr double kMostChange = 0.2;  // of 1 + |z|, in a step
   constexpr double kSmallChange = 0.02;
@@ -249,9 +212,10 @@ bool LoopJumps::follow(const Watched& watched, Eigen::VectorXd& z, double t, std
 
 /// Puts a loop where its elements take it from where it was; false where that leads nowhere, or where it is
 /// there.
-bool LoopJumps::go_from_before(const Watched& watched, double t, std::span<const double> x) {
+bool LoopJumps::go_from_before(Watched& watched, double t, std::span<const double> x) {
   network::Workspace trial = workspace_;
-  for (const std::uint32_t d : watched.discrete_states) trial.set_discrete_state(d, discrete_states_[d]);
+  for (const std::uint32_t d : watched.placing.discrete_states())
+    trial.set_discrete_state(d, discrete_states_[d]);
   Eigen::VectorXd z = unknowns_of(watched, unknowns_);
   if (!follow(watched, z, t, x, trial)) return false;
   trial.hold_loop(watched.loop, std::numeric_limits<double>::quiet_NaN(), {}, false);

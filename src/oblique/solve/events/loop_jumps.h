@@ -10,17 +10,10 @@
 #include <Eigen/Core>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/readings/switch_placing.h>
 #include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
-
-/// What turns over with the unknowns of an algebraic loop, and acts on it.
-struct LoopSwitches {
-  std::vector<std::uint32_t> switches;
-  std::vector<std::size_t> tables;             ///< the events that move them along
-  std::vector<std::uint32_t> discrete_states;  ///< of these
-};
-LoopSwitches switches_on(const network::Program& program, std::size_t loop);
 
 /// Whether nothing but elements whose outputs follow their inputs is on a loop, and it may have several
 /// solutions: of linear equations on which no switch acts there is one. Switches of loops of more than 32
@@ -55,8 +48,9 @@ class LoopJumps {
   bool go_from_guesses(double t, std::span<const double> x);
 
  private:
-  struct Watched : LoopSwitches {
+  struct Watched {
     std::size_t loop = 0;
+    SwitchPlacing placing;       ///< of what turns over with the unknowns of the loop, and acts on it
     Eigen::VectorXd directions;  ///< of each unknown: an amplifier moves as −residual, another as +residual
     bool blind = true;           ///< of elements without memory alone
     bool goes = true;            ///< at events, and where a run starts
@@ -71,13 +65,12 @@ class LoopJumps {
 
   std::optional<Pull> pull(const Watched& watched, double t, std::span<const double> x,
                            network::Workspace& workspace);
-  std::optional<Pull> pull_at(const Watched& watched, const Eigen::VectorXd& z, double t,
-                              std::span<const double> x, network::Workspace& workspace);
+  std::optional<Pull> pull_at(Watched& watched, const Eigen::VectorXd& z, double t, std::span<const double> x,
+                              network::Workspace& workspace);
   bool rests(const Watched& watched, const Eigen::MatrixXd& rates) const;
-  bool place(const Watched& watched, double t, std::span<const double> x, network::Workspace& workspace);
-  bool follow(const Watched& watched, Eigen::VectorXd& z, double t, std::span<const double> x,
+  bool follow(Watched& watched, Eigen::VectorXd& z, double t, std::span<const double> x,
               network::Workspace& workspace);
-  bool go_from_before(const Watched& watched, double t, std::span<const double> x);
+  bool go_from_before(Watched& watched, double t, std::span<const double> x);
   Eigen::VectorXd unknowns_of(const Watched& watched, const std::vector<double>& all) const;
 
   const network::Program& program_;
@@ -86,7 +79,7 @@ class LoopJumps {
   std::vector<Watched> watched_;
   bool any_goes_ = false;
   std::vector<double> unknowns_, discrete_states_;  ///< as they were noted
-  std::vector<double> event_functions_, signals_;
+  std::vector<double> signals_;
 };
 
 }  // namespace oblique::solve

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/readings/switch_placing.h>
 #include <oblique/solve/stability/linear_factors.h>
 
 namespace oblique::solve {
@@ -38,9 +39,7 @@ class Settling {
         workspace_(workspace),
         t_(t),
         groups_(groups),
-        bends_(std::move(bends)),
-        event_functions_(program.switches().size()),
-        signals_(program.n_signals()),
+        bends_(program, std::move(bends)),
         values_(program.jacobian_pattern().entries()),
         group_of_(program.n_states(), kHeld),
         place_(program.n_states(), 0) {
@@ -53,7 +52,7 @@ class Settling {
   }
 
   bool derivatives(const VectorXd& x, VectorXd& dxdt) {
-    if (!place_bends(x)) return false;
+    if (!bends_.place(t_, x.data(), workspace_)) return false;
     if (!program_.derivatives(t_, x.data(), dxdt.data(), workspace_)) return false;
     for (std::size_t i = 0; i < group_of_.size(); ++i) {
       if (group_of_[i] == kHeld) dxdt[static_cast<Index>(i)] = 0;
@@ -106,33 +105,6 @@ class Settling {
  private:
   static constexpr std::size_t kHeld = static_cast<std::size_t>(-1);
 
-  /// Puts the switches where the states x ask for them; false where they lead each other in a circle.
-  bool place_bends(const VectorXd& x) {
-    constexpr int kMostRounds = 100;
-    for (int round = 0; round < kMostRounds; ++round) {
-      if (bends_.empty()) return true;
-      if (!program_.event_functions(t_, x.data(), event_functions_.data(), workspace_)) return false;
-      bool turned = false;
-      for (const std::uint32_t s : bends_) {
-        const std::uint32_t state = program_.switches()[s].discrete_state;
-        const double position = event_functions_[s] > 0 ? 1 : 0;
-        turned = turned || workspace_.discrete_state(state) != position;
-        workspace_.set_discrete_state(state, position);
-      }
-      const auto here = program_.signals(t_, x.data(), signals_.data(), workspace_);
-      if (!here) return false;
-      std::vector<std::pair<std::uint32_t, double>> lines;
-      for (const std::uint32_t s : bends_) {
-        const auto event = program_.switches()[s].moves_along;
-        if (event && here->condition(*event))
-          lines.emplace_back(program_.events()[*event].actions.front().index, here->action_value(*event, 0));
-      }
-      for (const auto& [segment, line] : lines) workspace_.set_discrete_state(segment, line);
-      if (!turned && lines.empty()) return true;
-    }
-    return false;
-  }
-
   std::size_t row(std::size_t entry) const {
     return static_cast<std::size_t>(program_.jacobian_pattern().rows[entry]);
   }
@@ -165,8 +137,7 @@ class Settling {
   network::Workspace& workspace_;
   double t_;
   const StateGroups& groups_;
-  std::vector<std::uint32_t> bends_;
-  std::vector<double> event_functions_, signals_;
+  SwitchPlacing bends_;
   std::vector<double> values_;         ///< of the Jacobian
   std::vector<std::size_t> group_of_;  ///< of each state
   std::vector<Index> place_;           ///< of each state in its group
