@@ -222,7 +222,7 @@ x = { type = "integrator", in = "-x", initial = 1 }
 )toml");
   const Outcome checked = oblique("check own.toml --blocks own");
   EXPECT_EQ(checked.status, 0) << checked.err;
-  EXPECT_THAT(checked.out, HasSubstr("missing: integrator (1)"));
+  EXPECT_THAT(checked.out, HasSubstr("as it is drawn it has blocks that are no elements: integrator (1)\n"));
 }
 
 // One without a bandwidth, on which the machine's figure for it cannot act.

@@ -53,6 +53,20 @@ x   = { type = "integrator", in = ["v"], initial = 40 }
   EXPECT_LT(testing::difference(diagram, made.diagram), 1e-7);
 }
 
+// 40 of the diagram's machine units become one: what an output shows is a number of the problem then.
+TEST(ScaledRealisation, CallsNoMachineUnitWhatIsNone) {
+  const auto unit_of = [](const std::string& initial) {
+    return realise_scaled(
+               parsed("[run]\nuntil = 1\n[blocks]\nx = { type = \"integrator\", in = \"-x\", initial = " +
+                      initial + " }\n[outputs]\nx = \"x\"\n"),
+               shipped_blocks(), desk_machine())
+        .diagram.outputs.at(0)
+        .unit;
+  };
+  EXPECT_EQ(unit_of("40"), "1");
+  EXPECT_EQ(unit_of("1"), "machine unit");  // it stays one
+}
+
 // out = a sin(2π f t + φ) is known in closed form; 5 turns at a tolerance of 1e-8 a step.
 TEST(ScaledRealisation, MakesASineSourceOfTwoIntegrators) {
   const ScaledRealisation made = realise_scaled(parsed(R"toml(

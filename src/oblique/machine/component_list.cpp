@@ -68,7 +68,7 @@ class Counter {
                             needed.blocks});
     }
     for (const auto& [block, paths] : others_) {
-      list_.rows.push_back({block, static_cast<double>(paths.size()), false, {}, {}, false, paths});
+      list_.rows.push_back({block, static_cast<double>(paths.size()), false, {}, {}, false, paths, true});
     }
     return std::move(list_);
   }

@@ -19,6 +19,7 @@ struct ComponentListRow {
   std::string note;                 ///< "12 summers, 2 integrators …"
   bool at_least = false;  ///< `needed` is what is known to be: the machine's inputs are not published
   std::vector<std::string> blocks;  ///< that are of the kind, of those that no other kind can stand in for
+  bool is_block = false;            ///< no kind of element but a block, to be made of elements first
 
   double missing() const;  ///< 0 where the count is unknown
 };

@@ -146,6 +146,11 @@ class MachineScaling::State {
         element.block = flat.blocks.data() + (element.block - flat_.blocks.data());
     }
     apply_scaling(scaling, loop_speed, circuit, flat);
+    for (std::size_t k = 0; k < flat.outputs.size(); ++k) {
+      // What was a machine unit of the diagram's is none of the machine's.
+      const bool scaled = circuit.outputs[k].weight != circuit_.outputs[k].weight;
+      if (scaled && flat.outputs[k].unit == "machine unit") flat.outputs[k].unit = "1";
+    }
     Realisation written =
         write_elements(in_machine_time(diagram_, scaling.time), flat, elements_, machine_, circuit);
     ScaledRealisation result{std::move(written.diagram), scaling.time, {}, {}};

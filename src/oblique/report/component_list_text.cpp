@@ -18,15 +18,18 @@ std::string available_text(const machine::ComponentListRow& row) {
 }  // namespace
 
 std::string verdict_text(const machine::ComponentList& components) {
-  std::vector<std::string> named;
+  std::vector<std::string> named, blocks;
   switch (components.verdict()) {
     case machine::ComponentList::Verdict::fits:
       return "it fits";
     case machine::ComponentList::Verdict::does_not_fit:
       for (const machine::ComponentListRow& row : components.rows) {
-        if (row.missing() > 0) named.push_back(fmt::format("{} ({})", row.element, row.missing()));
+        if (row.missing() > 0)
+          (row.is_block ? blocks : named).push_back(fmt::format("{} ({})", row.element, row.missing()));
       }
-      return fmt::format("it does not fit; missing: {}", fmt::join(named, ", "));
+      if (blocks.empty()) return fmt::format("it does not fit; missing: {}", fmt::join(named, ", "));
+      return fmt::format("as it is drawn it has blocks that are no elements: {}{}{}", fmt::join(blocks, ", "),
+                         named.empty() ? "" : "; missing: ", fmt::join(named, ", "));
     case machine::ComponentList::Verdict::cannot_tell:
       break;
   }

@@ -133,6 +133,7 @@ Json component_list_json(const std::optional<machine::ComponentList>& components
                     {"needed", row.needed},
                     {"at_least", row.at_least},
                     {"exists", row.exists},
+                    {"is_block", row.is_block},
                     {"available", row.available ? Json(*row.available) : Json()},
                     {"missing", row.missing()}});
   }

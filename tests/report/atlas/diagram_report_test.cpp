@@ -157,6 +157,25 @@ TEST(DiagramReport, SaysWhatAnAmplifierSolvesFor) {
               HasSubstr("<span>0 = y − 0.05,   solved for y</span>"));
 }
 
+// No machine has sines as elements, but it is not for want of anything that they are not there.
+TEST(DiagramReport, TellsWhatIsToBeMadeForAMachine) {
+  const std::string page = page_of(R"toml(format = "oblique-diagram/1"
+[run]
+until = 1
+[blocks]
+x = { type = "constant", value = 5000 }
+y = { type = "sine", in = "0.001*x" }
+z = { type = "multiplier", x = "y", y = "x" }
+[outputs]
+z = "z"
+)toml");
+  EXPECT_THAT(page, HasSubstr("<td>as it is drawn it has blocks that are no elements: sine (1)</td>"));
+  EXPECT_THAT(page, HasSubstr("sine (1); missing: multipliers (1)</td>"));  // of a Heathkit EC-1
+  EXPECT_THAT(page, HasSubstr("overloads a real machine, unless it is scaled for one."));
+  EXPECT_THAT(page, HasSubstr("<td>4795 times</td>"));  // 5000 |sin 5|
+  EXPECT_THAT(page, HasSubstr("<td>96 %</td>"));
+}
+
 TEST(DiagramReport, HoldsWhatWasPublished) {
   const std::string page = page_of(kReported + kReportedAsPublished, "index.html", "studio.html#abc");
   EXPECT_THAT(page, AllOf(HasSubstr("<p>A. Author, Rings, 1960.</p>"),

@@ -43,6 +43,11 @@ std::string printed(const RecoveredEquation& equation) {
   return text;
 }
 
+/// How much of the machine unit a signal uses.
+std::string use_text(double signal) {
+  return signal < 10 ? fmt::format("{:.0f} %", 100 * signal) : readable(signal) + " times";
+}
+
 class DiagramWriter {
  public:
   explicit DiagramWriter(const DiagramReport& report)
@@ -227,7 +232,8 @@ class DiagramWriter {
     page_.introduction(
         "The largest signal of each amplifier over the run, and how much of the machine unit it makes use "
         "of; "
-        "what goes beyond 100 % overloads a real machine.");
+        "what goes beyond 100 % overloads a real machine" +
+        std::string(diagram_.machine.profile == "ideal" ? ", unless it is scaled for one." : "."));
     Table table(
         {"element", "label", "kind", "largest [machine unit]", "at t [s]", "use", "1 machine unit is"});
     std::size_t signal = 0;
@@ -240,9 +246,8 @@ class DiagramWriter {
         continue;
       for (std::size_t port = 0; port < block.definition->outputs.size(); ++port) {
         const solve::Peak& peak = check.in_full().run->peaks.at(first + port);
-        const double use = std::abs(peak.value);
         table.add({flat_.signal_name({b, port}), label_of(block.path), block.definition->title,
-                   readable(peak.value), readable(peak.time), fmt::format("{:.0f} %", 100 * use),
+                   readable(peak.value), readable(peak.time), use_text(std::abs(peak.value)),
                    meaning(b, port)});
       }
     }
@@ -337,7 +342,11 @@ class DiagramWriter {
       page_.table(component_list_table(*check.components).rows());
       page_.paragraph(capitalised(verdict_text(*check.components)) + ".");
     }
-    page_.introduction("Whether other machines have the elements that it takes, as it is drawn:");
+    page_.introduction("Whether other machines have the elements that it takes, as it is drawn; " +
+                       text::Remedy{text::Action{"patch", diagram_.file},
+                                    " scales it for a machine, and makes blocks that are no elements of what "
+                                    "the machine has:"}
+                           .words(report_.vocabulary));
     Table table({"machine", "verdict"});
     for (const std::string& name : diagram::machine_names()) {
       if (name == "ideal" || name == diagram_.machine.profile) continue;
