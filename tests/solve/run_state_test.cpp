@@ -57,6 +57,20 @@ x = { type = "integrator", in = ["one"], initial = 0.25 }
   EXPECT_NEAR(row_values(rest, "x").front(), 0.25 + 1, 1e-12);
 }
 
+// A tank of level h whose outflow q is the root of it runs dry at t = 2 s, and stays so: there the loop of q
+// has no derivative, and a run that goes on begins with that.
+TEST(RunState, KeepsATankDry) {
+  const Compiled made(R"(h = { type = "integrator", in = "-q", initial = 1 }
+q = { type = "servo-amplifier", in = ["m", "-h"], gain = "inf", bandwidth = "inf", initial = 1 }
+a = { type = "absolute-value", in = "q" }
+m = { type = "multiplier", in = ["a", "q"] }
+)");
+  const auto rest = run_from(made, run_of(made, {.until = 3, .samples = 2}).state, 5);
+  EXPECT_EQ(rest.trajectory.at(0, 0), 3);
+  EXPECT_NEAR(row_values(rest, "h").back(), 0, 1e-10);  // the absolute tolerance
+  EXPECT_EQ(row_values(rest, "q").back(), 0);
+}
+
 TEST(RunState, IsReadAsItWasWritten) {
   RunState state;
   state.time = 0.1 + 0.2;

@@ -11,7 +11,7 @@
 #include <oblique/solve/operating_point/rest.h>
 #include <oblique/solve/stability/linear_factors.h>
 
-#include "../support/compiled.h"
+#include "../support/runs.h"
 
 namespace oblique::solve {
 namespace {
@@ -34,6 +34,20 @@ TEST(Settling, FollowsAChainOfLoops) {
     const int k = std::stoi(chain.program.states()[i].name.substr(1));
     EXPECT_NEAR(states[i], std::pow(20.0 / 21, k), 1e-12) << k;  // rounding
   }
+}
+
+// An ideal divider behind a real summer, which stands at zero until it is brought to rest: before that the
+// loop of the quotient is singular.
+TEST(Settling, LetsALoopWaitForWhatItIsMadeOf) {
+  const testing::Compiled made(R"(one = { type = "constant" }
+s = { type = "summer", in = ["0.5*one"], bandwidth = "10 kHz" }
+q = { type = "servo-amplifier", in = ["p", "-0.25*one"], gain = "inf", bandwidth = "inf" }
+p = { type = "multiplier", in = ["q", "s"] }
+x = { type = "integrator", in = "q" }
+)");
+  const oblique::solve::Run result = testing::run_of(made, {.until = 1, .samples = 2});
+  EXPECT_NEAR(testing::row_values(result, "q").front(), 0.5, 1e-12);  // rounding
+  EXPECT_NEAR(testing::row_values(result, "x").back(), 0.5, 1e-10);
 }
 
 // Each of a ring of x = −μ (x − x⁺/2 − 0.1) rests at 0.1 μ/(1 + μ/2): one group, whose factors are sparse.

@@ -117,6 +117,7 @@ int OutputError::digits(double error) const {
 Trust estimate_error(const network::Program& program, const diagram::FlatDiagram& diagram,
                      const RunOptions& options, const Run& done) {
   Trust trust;
+  trust.has_states = program.n_states() > 0;
   for (std::size_t c = 0; c < diagram.outputs.size(); ++c) {
     OutputError& output = trust.outputs.emplace_back();
     output.name = diagram.outputs[c].name;
@@ -141,7 +142,7 @@ Trust estimate_error(const network::Program& program, const diagram::FlatDiagram
   } catch (const SolveError& error) {
     trust.failure = error.diagnostics().front().what;
   }
-  if (program.n_states() == 0) return trust;
+  if (!trust.has_states) return trust;
   check.method = other_method(done.method.method);
   check.max_steps = std::min(options.max_steps, std::max(kLeastSteps, kMostEffort * done.statistics.steps));
   try {

@@ -44,6 +44,7 @@ struct Trust {
   std::vector<OutputError> outputs;   ///< in the order of the diagram
   double event_shift = 0;             ///< [s] by which the times of events differ at most
   std::optional<double> events_part;  ///< [s] from where on the runs do not have the same events
+  bool has_states = true;             ///< else rounding alone errs, and every run alike
   std::string failure;                ///< why a check did not come to its end; empty: all did
 };
 

@@ -37,6 +37,9 @@ bool runs_away(const LoopCode& loop, const double* slots, LoopMatrix& matrix) {
   return matrix.factor(loop, slots) && matrix.determinant_sign() * rising < 0;
 }
 
+/// From a root that rests at zero: where the bend of its equation is looked at [machine unit].
+constexpr double kBesideNothing = 1e-6;
+
 /// Whether the unknown of a loop of one, which has no root any more near `origin`, is the root of what has
 /// come to zero but for the errors of the states: it then rests at zero, where its equation has no
 /// derivative. What only its root drives comes to rest there, as the level of a tank that runs dry. The
@@ -46,7 +49,6 @@ bool is_root_of_nothing(const LoopCode& loop, std::span<const Instruction> body,
   constexpr double kNothing =
       1e-8;                       // [machine unit]: a hundred absolute tolerances of a run that asks for none
   constexpr double kNear = 0.05;  // [machine unit]
-  constexpr double kBeside = 1e-6;  // [machine unit]: where the bend of the equation is looked at
   if (loop.size() != 1 || !(std::abs(origin) < kNear)) return false;
   const auto slope_at = [&](double z) {
     slots[loop.unknown_slots[0]] = z;
@@ -55,7 +57,7 @@ bool is_root_of_nothing(const LoopCode& loop, std::span<const Instruction> body,
     for (const MatrixEntry& entry : loop.jacobian) slope += slots[entry.slot];
     return slope;
   };
-  const double bend = slope_at(kBeside) / kBeside;
+  const double bend = slope_at(kBesideNothing) / kBesideNothing;
   if (slope_at(0) != 0) return false;
   const double residual = slots[loop.residual_slots[0]];
   return bend * residual >= 0 && bend != 0 && std::abs(residual) <= kNothing;
@@ -308,7 +310,16 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
   if (following_ && solved_) return LoopFailure::lost;
   write(loop, slots, origin_);
   search = newton(loop, body, slots);
-  return search.failure == LoopFailure::none ? accept() : search.failure;
+  if (search.failure == LoopFailure::none) return accept();
+  // A run that begins at a root that rests at zero, as one goes on from a state that was kept there.
+  if (origin_[0] != 0 || !is_root_of_nothing(loop, body, slots, 0)) return search.failure;
+  slots[loop.unknown_slots[0]] = kBesideNothing;
+  run_tape(body, slots);
+  if (!matrix_.factor(loop, slots)) return search.failure;
+  accept();
+  slots[loop.unknown_slots[0]] = 0;
+  run_tape(body, slots);
+  return LoopFailure::none;
 }
 
 /// The largest change of an unknown since the search began, of 1 + |z|.

@@ -140,7 +140,8 @@ bool Program::differentiate_loops(Workspace& workspace) const {
     }
     const LoopCode& loop = code_->loop_codes[l];
     if (!workspace.loops_[l].matrix().factor(loop, slots)) {
-      if (loop.size() == 1 && loop.has_branches()) {  // solved where its branch ends: nothing moves it there
+      // Solved where its branch ends, or passed over: nothing moves it there.
+      if (workspace.passes_failing_loops_ || (loop.size() == 1 && loop.has_branches())) {
         dz_dx.setZero();
         continue;
       }

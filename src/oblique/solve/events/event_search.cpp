@@ -25,9 +25,11 @@ constexpr double kFewestSamples = 1000;
 constexpr double kMostTurn = 0.5;
 constexpr double kMostSamples = 1e6;  ///< in a step
 
-/// How far beyond 0 and 1 the shares of a slide are where it ends: nearer than this what the states have
-/// drifted from the switching surface takes them back to it.
-constexpr double kEdge = 1e-6;
+/// How far beyond 0 and 1 the shares of a slide are where it has certainly ended: nearer than this it may run
+/// along the edge, and no slide begins as far beyond.
+constexpr double kEdge = 4e-6;
+/// How far beyond they are where it is taken to have ended: the rates there tell the side that it leaves to.
+constexpr double kTellingEdge = 4e-9;
 
 /// Of the time from sample to sample: how far apart the rates of what has none that is known are taken.
 constexpr double kRateStep = 1e-4;
@@ -120,7 +122,7 @@ std::optional<std::pair<double, std::vector<double>>> EventSearch::slide_beside(
   bool known = false;
   reached_ = evaluate_along_branch(reached_, beside, workspace_, [&](double time) {
     solution.states_at(time, states_);
-    known = slide_.evaluate(time, states_);
+    known = slide_.evaluate(time, states_, false);
     return known;
   });
   if (!known || reached_ != beside) return std::nullopt;
@@ -135,7 +137,7 @@ void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
   const double reached = evaluate_along_branch(reached_, t, workspace_, [&](double time) {
     solution.states_at(time, states_);
     here.reset();
-    if (!slide_.active() || slide_.evaluate(time, states_))
+    if (!slide_.active() || slide_.evaluate(time, states_, false))
       here = program_.event_functions(time, states_.data(), event_functions_.data(), workspace_);
     return here.has_value();
   });
@@ -215,6 +217,7 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
       }
       std::swap(left, right);
       leave_behind(left);
+      let_go(left, solution);
     }
   }
   return std::nullopt;
@@ -231,9 +234,30 @@ void EventSearch::leave_behind(Sample& at) {
       against = closed ? -at.event_functions[s] : at.event_functions[s];
       nearest_ = std::min(nearest_, std::abs(against));
     }
-    thresholds_.note_side(s, against, at.roundings[s], at.time);
+    thresholds_.note_side(s, slide_.rests(s) ? 0 : against, at.roundings[s], at.time);
     if (const auto less = thresholds_.leave_behind(s, at.event_functions[s], at.roundings[s]))
       at.crossed[s] += *less;
+  }
+}
+
+/// Takes those from a slide that stayed at zero along with it at first, and go their way now.
+void EventSearch::let_go(Sample& at, const Interpolant& solution) {
+  constexpr double kGoes = 1e-5;  // of the fastest state
+  std::vector<double> rates;
+  for (std::size_t s = 0; s < at.event_functions.size(); ++s) {
+    if (!slide_.rests(s) || slide_.holds(s) || slide_.follows(s)) continue;
+    const bool closed = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
+    if (closed != (at.event_functions[s] > 0)) continue;
+    if (rates.empty()) {
+      rates.resize(at.event_functions.size());
+      solution.states_at(at.time, states_);
+      if (!slide_.evaluate(at.time, states_, false)) return;
+      slide_.mixed_rates(rates);
+    }
+    const bool goes = closed == (rates[s] > 0) && std::abs(rates[s]) > kGoes * slide_.fastest();
+    if (!goes && std::abs(at.event_functions[s]) < 2 * SlidingMode::drift()) continue;
+    slide_.let_go(s);
+    at.crossed[s] += SlidingMode::drift();
   }
 }
 
@@ -241,6 +265,7 @@ std::optional<EventSearch::Found> EventSearch::between(const Sample& from, const
                                                        const Interpolant& solution) {
   const double length = to.time - from.time;
   const std::size_t n = to.crossed.size();
+  part_begin_ = from;
   bool clear = true;
   for (std::size_t k = 0; k < n && clear; ++k) {
     const double reach = length * std::max(std::abs(from.rates[k]), std::abs(to.rates[k]));
@@ -360,7 +385,37 @@ EventSearch::Found EventSearch::locate(Sample from, Sample to, const Interpolant
       found.slide_changes = true;
     }
   }
+  if (found.slide_changes && found.turned.empty()) found.time = edge_of_slide(to, solution);
   return found;
+}
+
+/// Where a share that is beyond its edge has passed it, at the latest `beyond`: it is seen there only once it
+/// is certain, which may be much later where the shares hardly move. (Where the sides hardly drive any more
+/// it is not the shares that tell.)
+double EventSearch::edge_of_slide(const Sample& beyond, const Interpolant& solution) {
+  constexpr double kDrives = 1e-3;
+  const std::size_t n = event_functions_.size(), units = slide_.units().size();
+  Sample middle;
+  sample(beyond.time, solution, middle);
+  std::vector<std::size_t> passed;  // places in a sample
+  for (std::size_t k = n; k < n + 2 * units; ++k) {
+    if (!(beyond.crossed[k] > 0)) continue;
+    if (slide_.repulsion((k - n) / 2).value_or(kAttracted) > -kDrives) return beyond.time;
+    passed.push_back(k);
+  }
+  const auto is_past = [&](const Sample& at) {
+    return std::any_of(passed.begin(), passed.end(),
+                       [&](std::size_t k) { return at.crossed[k] + kEdge > kTellingEdge; });
+  };
+  double before = part_begin_.time, past = beyond.time;
+  if (passed.empty() || is_past(part_begin_)) return past;
+  while (past - before > time_resolution(past)) {
+    const double half = before + (past - before) / 2;
+    if (!(half > before && half < past)) break;
+    sample(half, solution, middle);
+    (is_past(middle) ? past : before) = half;
+  }
+  return past;
 }
 
 }  // namespace oblique::solve

@@ -75,7 +75,9 @@ class EventSearch {
   std::optional<Found> split(const Sample& from, const Sample& to, const std::vector<double>& errors,
                              int depth, const Interpolant& solution);
   Found locate(Sample from, Sample to, const Interpolant& solution);
+  double edge_of_slide(const Sample& beyond, const Interpolant& solution);
   void leave_behind(Sample& at);
+  void let_go(Sample& at, const Interpolant& solution);
 
   const network::Program& program_;
   network::Workspace& workspace_;
@@ -87,6 +89,7 @@ class EventSearch {
   double nearest_ = 0;          ///< see `nearest`
   double begin_ = 0, end_ = 0;  ///< [s] of the search
   double reached_ = 0;          ///< [s] where the event functions were evaluated last
+  Sample part_begin_;           ///< of the part between two samples that is searched
   double samples_left_ = std::numeric_limits<double>::infinity();
   Interruption interruption_;
   std::vector<NearMiss> near_misses_;

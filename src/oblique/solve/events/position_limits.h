@@ -24,6 +24,7 @@ inline constexpr double kRounding = 1e-13;
 inline bool is_about_to_turn(double rate, double later, double step) {
   constexpr double kSmall = 0.05, kOfRounding = 10;
   const double change = std::abs(later - rate);
+  if ((later > rate) == (rate > 0)) return false;  // it grows
   return std::abs(rate) <= kSmall * change && rate * rate * step <= 2 * kOfRounding * kRounding * change;
 }
 

@@ -183,9 +183,14 @@ void Positions::stop(Combination sides, const std::vector<std::uint32_t>& may_st
 bool Positions::slide(Combination present, double t, std::span<const double> x) {
   const int n = static_cast<int>(trials_.units().size());
   const std::vector<Combination> order = nearest_first(present, trials_.units().size());
+  Combination crossing = 0;
+  for (std::size_t u = 0; u < trials_.units().size(); ++u) {
+    if (trials_.crosses(u)) crossing |= 1U << u;
+  }
   for (int size = 1; size <= n; ++size) {
     for (Combination sliding = 1; sliding < trials_.combinations(); ++sliding) {
-      if (std::popcount(sliding) != size || !trials_.is_independent(sliding) || !trials_.any_jumps(sliding))
+      if (std::popcount(sliding) != size || (sliding & crossing) != 0 || !trials_.is_independent(sliding) ||
+          !trials_.any_jumps(sliding))
         continue;
       for (const Combination sides : order) {
         if (((sides ^ present) & sliding) == 0 && try_slide(sliding, sides, t, x)) return true;

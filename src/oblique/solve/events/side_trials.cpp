@@ -179,6 +179,14 @@ int SideTrials::direction(Combination sides, std::size_t unit) const {
   return side_of(trial->rates[unit], scales_[unit]);
 }
 
+bool SideTrials::crosses(std::size_t unit) const {
+  const int goes = direction(0, unit);
+  for (Combination sides = 0; sides < combinations(); ++sides) {
+    if (goes == 0 || direction(sides, unit) != goes) return false;
+  }
+  return true;
+}
+
 /// Whether the equations jump with a unit.
 bool SideTrials::jumps(std::size_t unit) const {
   const auto& members = program_.switch_structure().members[units_[unit]];

@@ -49,6 +49,10 @@ class SideTrials {
   /// Whether both sides of the switching surface of a unit lead away from it: then either is a solution.
   bool is_undecided(Combination sides, std::size_t unit) const;
 
+  /// Whether the solution crosses the switching surface of a unit, wherever the others stand: nothing holds
+  /// it there.
+  bool crosses(std::size_t unit) const;
+
   /// Whether the equations jump with any of these units.
   bool any_jumps(Combination units) const;
   /// Whether the event functions of these units do not depend on their own positions.

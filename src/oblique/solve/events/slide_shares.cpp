@@ -24,6 +24,7 @@ std::optional<std::vector<double>> shares_of_coupled(SlideSides& sides, std::vec
                                                      double rate, double most) {
   constexpr int kMostIterations = 50;
   constexpr double kFar = 1e3;
+  constexpr double kSolved = 1e-6;  // of the largest rate of any side
   const std::size_t n = sides.units();
   const auto size = static_cast<Eigen::Index>(n);
   Eigen::VectorXd residual(size), last(size);
@@ -65,7 +66,7 @@ std::optional<std::vector<double>> shares_of_coupled(SlideSides& sides, std::vec
     if (change < 1e-14) break;
   }
   residuals(trial, residual);
-  if (!(residual.cwiseAbs().maxCoeff() <= most * scale)) return std::nullopt;
+  if (!(residual.cwiseAbs().maxCoeff() <= kSolved * scale)) return std::nullopt;
   return trial;
 }
 

@@ -141,6 +141,10 @@ void SlidingMode::load_base() {
     workspace_.set_discrete_state(discrete_state, position);
 }
 
+bool SlidingMode::settle_sides(double t, std::span<const double> x) {
+  return std::all_of(sides_.begin(), sides_.end(), [&](SlideSide& side) { return settle(side, t, x); });
+}
+
 bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<const double> x) {
   if (units.size() > kMostUnits) return false;
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
@@ -155,8 +159,7 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
   }
   for (const std::uint32_t segment : segments_)
     base_.emplace_back(segment, workspace_.discrete_state(segment));
-  bool possible = sides_.are_all();
-  for (SlideSide& side : sides_) possible = possible && settle(side, t, x);
+  bool possible = sides_.are_all() && settle_sides(t, x);
   const std::vector<std::uint64_t> broken = broken_by(program_, units_);
   may_jump_.assign(units_.size(), false);
   for (std::size_t u = 0; u < units_.size(); ++u) {
@@ -209,10 +212,10 @@ bool SlidingMode::evaluate(SlideSide& side, double t, std::span<const double> x)
   return true;
 }
 
-bool SlidingMode::evaluate(double t, std::span<const double> x) {
+bool SlidingMode::evaluate(double t, std::span<const double> x, bool takes_back) {
   bool valid = true;
   for (SlideSide& side : sides_) valid = valid && evaluate(side, t, x);
-  valid = valid && find_shares();
+  valid = valid && find_shares(takes_back ? kMostReturn : 0);
   load_base();
   for (std::size_t u = 0; valid && u < units_.size(); ++u) {
     double& strongest = strongest_[units_[u]];
@@ -284,16 +287,16 @@ std::optional<double> SlidingMode::repulsion(std::size_t unit) const {
   return part > kNoDrive ? part : std::min(part, 0.0);
 }
 
-/// The shares with which no event function moves.
-bool SlidingMode::find_shares() {
-  if (units_.size() == 1) return find_only_share();
-  auto found = shares_of_coupled(sides_, shares_, kReturn / span_, kMostReturn);
+/// The shares with which no event function moves, but on its way back by so much of what the sides do.
+bool SlidingMode::find_shares(double way_back) {
+  if (units_.size() == 1) return find_only_share(way_back);
+  auto found = shares_of_coupled(sides_, shares_, kReturn / span_, way_back);
   if (!found) return false;
   shares_ = std::move(*found);
   return true;
 }
 
-bool SlidingMode::find_only_share() {
+bool SlidingMode::find_only_share(double most_back) {
   const double below = sides_.of_unit(sides_[0].rates, 0), above = sides_.of_unit(sides_[1].rates, 0);
   if (!std::isfinite(below - above)) return false;
   if (below == above) {  // a slide stays as it was where its sides say nothing; none begins there
@@ -301,7 +304,7 @@ bool SlidingMode::find_only_share() {
     return begun_ && std::abs(below) <= kNoDrive * strongest_[units_[0]];
   }
   shares_[0] =
-      (below + way_back(sides_, 0, kReturn / span_, kMostReturn * std::abs(below - above))) / (below - above);
+      (below + way_back(sides_, 0, kReturn / span_, most_back * std::abs(below - above))) / (below - above);
   // Where the sides hardly drive any more the way back says nothing; what follows is told by `repulsion`.
   if (std::abs(below - above) < kNoDrive * strongest_[units_[0]])
     shares_[0] = std::clamp(shares_[0], 0.0, 1.0);
@@ -355,6 +358,16 @@ void SlidingMode::mixed_rates(std::span<double> rates) const {
   for (const SlideSide& side : sides_) {
     for (std::size_t s = 0; s < rates.size(); ++s) rates[s] += side.weight * side.rates[s];
   }
+}
+
+double SlidingMode::fastest() const {
+  double largest = 0;
+  for (std::size_t i = 0; i < program_.n_states(); ++i) {
+    double rate = 0;
+    for (const SlideSide& side : sides_) rate += side.weight * side.dxdt[i];
+    largest = std::max(largest, std::abs(rate));
+  }
+  return largest;
 }
 
 double SlidingMode::crossed(std::size_t side, std::size_t follower) const {

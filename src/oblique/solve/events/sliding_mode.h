@@ -36,6 +36,8 @@ class SlidingMode {
   /// Whether the event function of a switch stays at zero along with the slide, though it is not slid along.
   bool rests(std::size_t s) const { return rests_[s]; }
   void let_rest(std::size_t s) { rests_[s] = true; }
+  /// It has gone its way.
+  void let_go(std::size_t s) { rests_[s] = false; }
   /// The switches that follow.
   const std::vector<std::uint32_t>& followers() const { return followers_; }
 
@@ -50,8 +52,12 @@ class SlidingMode {
   bool jacobian(double t, const double* x, double* values);
   bool signals(double t, const double* x, double* values);
 
-  /// Evaluates all sides and the shares at (t, x). False as above, or where no shares are found.
-  bool evaluate(double t, std::span<const double> x);
+  /// Evaluates all sides and the shares at (t, x), those that take back what integration has let the event
+  /// functions drift off, or those that keep them where they are. False as above, or where no shares are
+  /// found.
+  bool evaluate(double t, std::span<const double> x, bool takes_back = true);
+  /// Puts what follows the units on each side where it belongs there, after another switch has turned over.
+  bool settle_sides(double t, std::span<const double> x);
   // As the last `evaluate` left them:
   /// Of each unit, that of its upper side: outside 0 and 1 where the slide is over.
   const std::vector<double>& shares() const { return shares_; }
@@ -74,6 +80,8 @@ class SlidingMode {
   static constexpr double kNoDrive = 1e-6;
   /// d(event function)/dt of every switch in the mixture.
   void mixed_rates(std::span<double> rates) const;
+  /// The largest of all dx/dt in the mixture.
+  double fastest() const;
   /// Whether a switch that follows is in one position on one side and in the other on another.
   bool is_torn(std::size_t s) const;
   /// How far from zero an event function that has been slid along may have drifted [as the event function].
@@ -93,8 +101,8 @@ class SlidingMode {
   void load(const SlideSide& side);
   void load_base();
   bool evaluate(SlideSide& side, double t, std::span<const double> x);
-  bool find_shares();
-  bool find_only_share();
+  bool find_shares(double way_back);
+  bool find_only_share(double way_back);
   /// Of a unit that nothing couples, the rates of its event function on its two sides.
   struct Drives {
     double above = 0, below = 0;

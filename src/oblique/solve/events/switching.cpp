@@ -115,11 +115,12 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
   }
   const std::span<const double> after = workspace_.discrete_states();
   if (!std::equal(before.begin(), before.end(), after.begin(), after.end())) {
-    const bool known = slide_.evaluate(t, x);
+    const bool known = slide_.settle_sides(t, x) && slide_.evaluate(t, x);
     for (std::size_t u = 0; known && u < doubts.size(); ++u) {
       if (slide_.doubt(u) == SlidingMode::Doubt::none) doubts[u] = SlidingMode::Doubt::none;
     }
     workspace_.load_discrete_states(before);
+    slide_.settle_sides(t, x);
     slide_.evaluate(t, x);
   }
   return doubts;

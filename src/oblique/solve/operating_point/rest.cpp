@@ -177,4 +177,15 @@ std::vector<text::Diagnostic> bring_to_rest(const network::Program& program, net
   return warnings;
 }
 
+bool rest_past_loops(const network::Program& program, network::Workspace& workspace, double t,
+                     std::vector<double>& states) {
+  if (rest_states(program).empty()) return false;
+  std::vector<double> settled = states;
+  workspace.pass_failing_loops(true);
+  const bool rests = settle(program, workspace, t, servo_groups(program), settled);
+  workspace.pass_failing_loops(false);
+  if (rests) states = settled;
+  return rests;
+}
+
 }  // namespace oblique::solve

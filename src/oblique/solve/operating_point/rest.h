@@ -25,4 +25,9 @@ std::vector<std::vector<std::size_t>> servo_groups(const network::Program& progr
 std::vector<text::Diagnostic> bring_to_rest(const network::Program& program, network::Workspace& workspace,
                                             double t, std::vector<double>& states, const std::string& file);
 
+/// Brings to rest at time t what is brought to rest before the clock starts, with the algebraic loops passed
+/// over that have no solution yet; false, and `states` are as they were, where that does not settle.
+bool rest_past_loops(const network::Program& program, network::Workspace& workspace, double t,
+                     std::vector<double>& states);
+
 }  // namespace oblique::solve

@@ -50,6 +50,22 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
     if (!parts.switching.signals(t, states.data(), signals.data()))
       throw loop_error(program, parts.workspace.trouble(), t, file);
   };
+  const std::vector<double> begun = states;
+  const auto settles = [&] {
+    try {
+      settle_all();
+      return true;
+    } catch (const SolveError& error) {
+      if (error.kind() != SolveError::Kind::singular_loop) throw;
+      return false;
+    }
+  };
+  if (settles()) return warnings;
+  // What an ideal amplifier's loop is made of may have to come to rest before it has a solution.
+  if (parts.options.settle && rest_past_loops(program, parts.workspace, t, states) && settles())
+    return warnings;
+  states = begun;
+  parts.workspace.reset();
   try {
     settle_all();
   } catch (const SolveError& error) {

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// Where a slide ends, and what goes its own way beside another slide.
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "../../support/runs.h"
+
+namespace oblique::solve {
+namespace {
+
+using testing::Compiled;
+using testing::row_values;
+using testing::run_of;
+
+/// z′ = (sin t − sign(z)/2)·size slides until sin t = 1/2, at t = π/6, and comes back to zero where the
+/// integral of sin t − 1/2 from there is zero.
+constexpr double kLeaves = std::numbers::pi / 6;
+double integral(double t) {
+  return std::cos(kLeaves) - std::cos(t) - (t - kLeaves) / 2;
+}
+double comes_back() {
+  double before = 3, after = 5;
+  while (after - before > 1e-15 * after) {
+    const double half = (before + after) / 2;
+    if (half == before || half == after) break;
+    (integral(half) > 0 ? before : after) = half;
+  }
+  return before;
+}
+
+std::string friction(double size) {
+  return fmt::format(R"toml(
+one = {{ type = "constant" }}
+w = {{ type = "sine-source", frequency = "1 rad/s" }}
+z = {{ type = "integrator", in = ["{0}*w", "-0.5*{0}*c"] }}
+c = {{ type = "sign", in = "z" }}
+turn = {{ type = "integrator", in = "c" }}
+)toml",
+                     size);
+}
+
+class SlideBesideAnother : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Sizes, SlideBesideAnother, ::testing::Values(1, 1e-3, 1e-5));
+
+// While v slides, z leaves its switching surface tangentially, and crosses it once more. It did so 1e-7 late,
+// as if it had been resting there all the time.
+TEST_P(SlideBesideAnother, IsLeftForGood) {
+  const double size = GetParam();
+  const oblique::solve::Run result = run_of(Compiled(friction(size) + R"toml(
+v = { type = "integrator", in = ["0.3*one", "-s"] }
+s = { type = "sign", in = "v" }
+)toml"),
+                                            {.until = 6});
+  const double back = comes_back();
+  // The mean of the sign while it slides is 2 sin t.
+  const double turn = 2 * (1 - std::cos(kLeaves)) + (back - kLeaves) - (6 - back);
+  // The absolute tolerance of 1e-10 over the speed at which z comes back, 1.12 · size, twice; and as much
+  // again.
+  EXPECT_NEAR(row_values(result, "turn").back(), turn, 1e-7 + 4e-10 / size);
+  EXPECT_TRUE(result.warnings.empty());
+}
+
+// An integrator at its limit stands on a switching surface as well. Where z left its own it slid along it
+// again, since less slides so, and left it at the same instant, until all steps were used up.
+TEST(SlideEnd, ComesThoughAnotherStandsAtItsLimit) {
+  const oblique::solve::Run result =
+      run_of(Compiled(friction(1) + R"toml(v = { type = "integrator", in = ["one"], limit = 0.5 })toml"),
+             {.until = 6, .max_steps = 20'000});
+  const double back = comes_back();
+  const double z = std::cos(back) - std::cos(6) + (6 - back) / 2;
+  EXPECT_NEAR(row_values(result, "z").back(), z, 1e-6);  // 100 tolerances: there are five events
+}
+
+// v′ = t/1000 − sign(v) breaks loose at t = 1000 s: v = (t − 1000)²/2000. It did so 0.002 s late, where the
+// share of one side was certainly beyond 1.
+TEST(SlideEnd, IsNoLaterThanItIsKnown) {
+  const oblique::solve::Run result = run_of(Compiled(R"toml(
+pull = { type = "ramp", slope = 1e-3 }
+v = { type = "integrator", in = ["pull", "-f"] }
+f = { type = "sign", in = "v" }
+)toml"),
+                                            {.until = 1000.1});
+  EXPECT_NEAR(row_values(result, "v").back(), 5e-6, 2e-10);  // twice the absolute tolerance; it was 2e-9 off
+}
+
+// In units so small that a slide and its end are nearer than rounding.
+TEST(SlideEnd, ComesInSmallUnits) {
+  for (const double size : {1e-8, 1e-10}) {
+    const oblique::solve::Run result = run_of(Compiled(fmt::format(R"toml(
+w = {{ type = "time-function", formula = "3*sin(1.3*time)", scale = {0} }}
+s = {{ type = "comparator", in = "v", low = "-0.6*{0}", high = "0.6*{0}" }}
+v = {{ type = "integrator", in = ["w", "-s"] }}
+)toml",
+                                                                   size)),
+                                              {.until = 1, .max_steps = 20'000});
+    const double leaves = std::asin(0.2) / 1.3;
+    const double v = 3 / 1.3 * (std::cos(1.3 * leaves) - std::cos(1.3)) - 0.6 * (1 - leaves);
+    EXPECT_NEAR(row_values(result, "v").back(), v * size, 1e-12) << size;  // a hundredth of the tolerance
+  }
+}
+
+// An ideal diode: open while neither the voltage drives nor a current flows. At its zero the voltage turns
+// its own comparator over as well, and drives the current on both sides of zero: nothing is open there.
+TEST(SlideEnd, IsNotDoubtedWhereAnotherTurnsWithIt) {
+  const oblique::solve::Run result = run_of(Compiled(R"toml(
+u = { type = "time-function", formula = "-cos(time)" }
+p = { type = "comparator", in = "u" }
+f = { type = "comparator", in = "i" }
+pf = { type = "maximum", in = ["p", "f"] }
+du = { type = "multiplier", in = ["u", "pf"] }
+i = { type = "integrator", in = "du" }
+)toml"),
+                                            {.until = 3});
+  EXPECT_TRUE(result.warnings.empty());
+  EXPECT_NEAR(row_values(result, "i").back(), 1 - std::sin(3), 1e-7);  // ten tolerances
+}
+
+}  // namespace
+}  // namespace oblique::solve
