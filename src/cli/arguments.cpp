@@ -173,6 +173,16 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
     print_error(message(explain(app, error, arguments)));
     return ExitStatus::bad_request;
   }
+  std::vector<std::string> names;
+  for (const CLI::App* verb = &app; verb != nullptr;) {
+    for (const CLI::Option* const option : verb->get_options()) {
+      const std::vector<std::string>& spelled = option->get_lnames();
+      names.insert(names.end(), spelled.begin(), spelled.end());
+    }
+    const std::vector<CLI::App*> chosen_below = verb->get_subcommands();
+    verb = chosen_below.empty() ? nullptr : chosen_below.front();
+  }
+  know_options(std::move(names));
   return std::nullopt;
 }
 

@@ -225,6 +225,20 @@ x = { type = "integrator", in = "-x", initial = 1 }
   EXPECT_THAT(checked.out, HasSubstr("as it is drawn it has blocks that are no elements: integrator (1)\n"));
 }
 
+// `run` has an option for the end of a run, and `patch` has none.
+TEST_F(PatchForMachine, NamesOnlyItsOwnOptions) {
+  write("escapes.toml", R"toml(format = "oblique-diagram/1"
+[run]
+until = 2
+[blocks]
+x = { type = "integrator", in = "s", initial = 1 }
+s = { type = "squarer", in = "x" }
+)toml");
+  EXPECT_THAT(oblique("run escapes.toml").err, HasSubstr("; or end the run earlier with --until\n"));
+  EXPECT_THAT(oblique("patch escapes.toml --machine tr-48 -o made.toml").err,
+              HasSubstr("; or end the run earlier with 'until' of [run]\n"));
+}
+
 // One without a bandwidth, on which the machine's figure for it cannot act.
 TEST_F(PatchForMachine, ComparesWithAUsersBlockThatLacksAParameter) {
   write("own/summer.toml", R"(format = "oblique-block/1"

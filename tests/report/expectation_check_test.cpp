@@ -71,7 +71,7 @@ TEST(Expectations, RefuseATimeOutsideOfAShorterRun) {
                       "\"y at 1\" = { value = 0, within = 9 }\n");
   EXPECT_EQ(message_of<diagram::DiagramError>([&] { expectation_times(made.diagram, 2); }),
             "d.toml:8:1: 'x at 3' is at t = 3 s, outside the run; expected a time from 0 to 2 s\n"
-            "  remedy: let the run last longer ('until' of [run], or 'until')");
+            "  remedy: let the run last longer: 'until'");
 }
 
 TEST(Expectations, RefuseAnUnknownOutputAndSuggestOne) {

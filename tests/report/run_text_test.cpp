@@ -92,6 +92,11 @@ TEST(RunText, GivesTheDigitsThatAnErrorLeaves) {
       "trust: the times of events differ by 1.0e-04 s at most\n"
       "warning: from t = 8 s on the runs do not have the same events\n"
       "trust: one more run ended early: too many steps\n");
+  trust.has_states = false;
+  EXPECT_NE(
+      trust_text(trust).find("trust: the diagram integrates nothing, so that these runs round alike: what it "
+                             "makes of rounding, from event to event, is not in them\n"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -63,7 +63,11 @@ class Progress {
 /// A quantity given as an option, in `unit`. Throws ReadError that names the option.
 double quantity_option(const std::string& option, const std::string& text, std::string_view unit);
 
-/// How this program spells settings and actions: "--until", "`oblique check FILE`".
+/// What the verb that was asked for can be given, without the dashes.
+void know_options(std::vector<std::string> names);
+
+/// How this program spells settings and actions: "--until", or "'until' of [run]" where the verb has no such
+/// option; "`oblique check FILE`".
 const text::Vocabulary& command_line();
 
 /// A diagnostic in these words.

@@ -95,11 +95,11 @@ std::vector<double> loop_speeds() {
 /// Where the errors of elements leave instant loops no rest, at the start perhaps alone, the run itself shows
 /// how they fare.
 Judgement judge_loops(const diagram::Diagram& diagram, const diagram::BlockLibrary& library) {
-  Judgement at_rest = judge(diagram, library);
+  diagram::Diagram limited = diagram;
+  limited.run.max_steps = std::min(limited.run.max_steps, kMostSteps);
+  Judgement at_rest = judge(limited, library);
   if (at_rest.no_rest.empty()) return at_rest;
   try {
-    diagram::Diagram limited = diagram;
-    limited.run.max_steps = std::min(limited.run.max_steps, kMostSteps);
     return judge_along_run(limited, library);
   } catch (const solve::SolveError&) {
     return at_rest;

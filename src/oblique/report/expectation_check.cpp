@@ -76,7 +76,7 @@ std::vector<double> expectation_times(std::span<const diagram::Expectation> expe
       diagnostics.add({e.place,
                        fmt::format("'{}' is at t = {} s, outside the run", e.text, e.time),
                        fmt::format("a time from 0 to {} s", until),
-                       {"let the run last longer ('until' of [run], or ", text::Setting{"until"}, ")"}});
+                       {"let the run last longer: ", text::Setting{"until"}}});
     }
     times.push_back(e.time);
   }

@@ -100,6 +100,12 @@ std::string trust_text(const solve::Trust& trust) {
     text += fmt::format("warning: from t = {:.6g} s on the runs do not have the same events\n",
                         *trust.events_part);
   }
+  if (!trust.has_states) {
+    text +=
+        "trust: the diagram integrates nothing, so that these runs round alike: what it makes of rounding, "
+        "from "
+        "event to event, is not in them\n";
+  }
   if (!trust.failure.empty()) text += fmt::format("trust: one more run ended early: {}\n", trust.failure);
   return text;
 }
