@@ -81,6 +81,8 @@ TEST(Diagram, IsEqualToNoOther) {
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].unit = "b"; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].factor = 7; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].because = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].tried = "b"; }));
+  EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->leads = true; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.published->values[0].set = {{"b", "7"}}; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->title = "b"; }));
   EXPECT_FALSE(is_equal_after([](Diagram& d) { d.lesson->text = "b"; }));

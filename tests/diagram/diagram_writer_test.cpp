@@ -90,7 +90,10 @@ TEST(WriteDiagram, HasWhatWasPublishedAndTheLesson) {
   value.label = "v₀";
   value.set = {{"a.value", "1/3"}};
   value.because = "it drifts";
-  p.values = {value};
+  p.leads = true;
+  p.values = {value, value};
+  p.values.back().because.clear();
+  p.values.back().tried = "a longer run";
   d.lesson = Lesson{
       "One",
       "Of sums.",
@@ -108,6 +111,7 @@ title = "A title"
 in = "A series"
 year = 2019
 number = "36"
+leads = true
 plot = ["x", "t"]
 errata = ["0.15 is 1.5"]
 
@@ -119,6 +123,15 @@ within = 0.001
 at = "1/2"
 set = { "a.value" = "1/3" }
 because = "it drifts"
+
+[[published.value]]
+name = "x"
+label = "v₀"
+value = 0.343
+within = 0.001
+at = "1/2"
+set = { "a.value" = "1/3" }
+tried = "a longer run"
 
 [lesson]
 title = "One"

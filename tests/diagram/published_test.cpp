@@ -140,7 +140,7 @@ TEST(Published, RefusesWhatItCannotMean) {
   EXPECT_EQ(published_message(held + "year = 19.5\n"),
             "d.toml:13:8: 'year' of [published] is 19.5; expected a whole number from 1800 to 2199");
   EXPECT_EQ(published_message(held + "page = 1.5\n"),
-            "d.toml:13:8: 'page' of [published] is a number; expected a text");
+            "d.toml:13:8: 'page' of [published] is 1.5; expected a text, or a whole number from 0 on");
   EXPECT_EQ(published_message(held + "plot = [\"x\"]\n"),
             "d.toml:13:8: 'plot' of [published] names one output; expected [\"y\", \"x\"]: y against x, the "
             "last along the horizontal axis");
@@ -157,6 +157,22 @@ TEST(Published, RefusesWhatItCannotMean) {
             }),
             "d.toml:4:1: [published] has no 'author'; expected a text\n"
             "d.toml:4:1: [published] has no 'title'; expected a text");
+}
+
+TEST(Published, RefusesWhatSaysNothing) {
+  EXPECT_EQ(
+      value_message("because = \"a\"\ntried = \"b\"\n"),
+      "d.toml:17:9: [[published.value]] has 'because' and 'tried'; expected the one where the difference is "
+      "explained, the other where it is not");
+  const std::string held = "picture = \"a bell\"\n";
+  EXPECT_EQ(published_message("kind = \"equations\"\npicture = 3\n"),
+            "d.toml:13:11: 'picture' of [published] is a number; expected a string");
+  EXPECT_EQ(published_message(held + "page = -3\n"),
+            "d.toml:13:8: 'page' of [published] is -3; expected a text, or a whole number from 0 on");
+  EXPECT_EQ(
+      published_message(held + "plot = [\"t\", \"x\", \"t\"]\n"),
+      "d.toml:13:8: 'plot' of [published] names 't' twice; expected each output once, and the last along the "
+      "horizontal axis");
 }
 
 TEST(Published, RefusesValuesThatCannotBeHeld) {
@@ -180,7 +196,7 @@ TEST(Published, RefusesValuesThatCannotBeHeld) {
             "  remedy: quote the whole name: \"a.…\" = …");
   EXPECT_EQ(value_message("sigma = 3\n"),
             "d.toml:16:1: unknown key 'sigma' in [[published.value]]\n"
-            "  remedy: known: name, label, because, at, unit, set, value, within");
+            "  remedy: known: name, label, because, tried, at, unit, set, value, within");
 }
 
 // What is set is known only where the blocks are.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -63,6 +64,9 @@ ExitStatus run_atlas(const Session& session, const AtlasRequest& request) {
       progress.show(static_cast<double>(programmes.size()) / static_cast<double>(files.size()));
     }
   }
+  std::stable_partition(programmes.begin(), programmes.end(), [](const report::Programme& programme) {
+    return programme.diagram.published->leads;
+  });
   print(report::agreement_table(programmes).text(2));
   note(report::agreement_summary(programmes) + "\n");
   for (const report::Programme& programme : programmes) {
@@ -80,7 +84,7 @@ ExitStatus run_atlas(const Session& session, const AtlasRequest& request) {
       written.push_back({(path(request.output) / page.name).string(), page.text});
     save_together(written);
   }
-  return report::all_explained(programmes) ? ExitStatus::done : ExitStatus::no;
+  return report::all_known(programmes) ? ExitStatus::done : ExitStatus::no;
 }
 
 }  // namespace oblique::cli

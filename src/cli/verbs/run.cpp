@@ -213,8 +213,8 @@ ExitStatus check(const Claims& claims, const diagram::Diagram& diagram, const di
   if (!claims.of_step) {
     const std::vector<report::PublishedResult> published =
         report::check_published(diagram, library, settings, result);
-    good = good &&
-           std::all_of(published.begin(), published.end(), [](const auto& r) { return r.is_explained(); });
+    good =
+        good && std::all_of(published.begin(), published.end(), [](const auto& r) { return r.is_known(); });
     print(report::to_text(published) + report::open_question_text(diagram));
     note(report::warnings_text(published, command_line()));
   }

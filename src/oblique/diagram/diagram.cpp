@@ -72,7 +72,7 @@ bool Published::operator==(const Published& other) const {
   return kind == other.kind && author == other.author && title == other.title && in == other.in &&
          year == other.year && number == other.number && page == other.page && address == other.address &&
          machine == other.machine && subject == other.subject && picture == other.picture &&
-         plot == other.plot && errata == other.errata && values == other.values;
+         leads == other.leads && plot == other.plot && errata == other.errata && values == other.values;
 }
 
 bool LessonQuestion::operator==(const LessonQuestion& other) const {

@@ -94,6 +94,7 @@ struct PublishedValue {
   double factor = 1;     ///< what one of `unit` is in the unit of the output
   std::vector<ParameterOverride> set;  ///< what is set for it, in a run of its own; empty: nothing
   std::string because;                 ///< why the run differs from it by more than `within`
+  std::string tried;                   ///< what was tried to explain that, where nothing did
   bool operator==(const PublishedValue&) const = default;
 };
 
@@ -114,6 +115,7 @@ struct Published {
   std::string machine;  ///< on which it ran
   std::string subject;  ///< the field that its problem belongs to
   std::string picture;  ///< what a published picture shows
+  bool leads = false;   ///< whether lists begin with it
   std::vector<std::string>
       plot;  ///< outputs as on the plotter: the last is the horizontal axis; empty: `t` is
   std::vector<std::string> errata;

@@ -186,7 +186,8 @@ class DiagramReader {
     output.signal = reader.required_string("signal", "the name of a signal").value_or("");
     if (const text::Value* const signal = entry.value.find("signal"))
       output.place.position = signal->position;
-    output.scale = reader.quantity("scale", "1").value_or(1);
+    output.unit = reader.string("unit").value_or(output.unit);
+    output.scale = reader.quantity("scale", "1").value_or(of_machine_unit(output.unit));
     if (!std::isfinite(output.scale)) {
       reader.report("scale", fmt::format("'scale' of output '{}' is infinite", entry.key), "a finite number");
     }
@@ -195,8 +196,15 @@ class DiagramReader {
       reader.report("offset", fmt::format("'offset' of output '{}' is infinite", entry.key),
                     "a finite number");
     }
-    output.unit = reader.string("unit").value_or(output.unit);
     reader.finish();
+  }
+
+  /// What a machine unit is in a unit of an output that gives no scale: its volts, where those are asked for
+  /// and known, else 1.
+  double of_machine_unit(const std::string& of_output) const {
+    const auto unit = text::parse_unit(of_output);
+    const text::Unit volt = unit_on(diagram_.machine.profile, "V");
+    return unit && unit->same_dimension(volt) && volt.volts ? *volt.volts / unit->scale : 1;
   }
 
   text::Diagnostics& diagnostics_;

@@ -47,7 +47,11 @@ class PublishedReader {
 
   Published read() {
     read_kind();
-    for (const auto& [key, member] : kTextKeys) published_.*member = text_or_whole(key);
+    for (const auto& [key, member] : kTextKeys) {
+      const bool may_be_number = key == "number" || key == "page";
+      published_.*member = may_be_number ? text_or_whole(key) : reader_.string(key).value_or("");
+    }
+    published_.leads = reader_.boolean("leads").value_or(false);
     for (const std::string_view key : {"author", "title"}) {
       if (reader_.table().find(key) == nullptr)
         reader_.report(key, fmt::format("[published] has no '{}'", key), "a text");
@@ -71,16 +75,19 @@ class PublishedReader {
                    text::suggest(*kind, {std::string(kProgramme), std::string(kEquations)}));
   }
 
-  /// A text; a whole number stands for itself, as the number of an issue.
+  /// A text; a whole number from 0 on stands for itself, as the number of an issue.
   std::string text_or_whole(std::string_view key) {
     const text::Value* const value = reader_.find(key);
     if (value == nullptr) return {};
     if (value->kind == text::Value::Kind::string) return value->text;
     if (value->kind == text::Value::Kind::number && value->number == std::floor(value->number) &&
-        std::abs(value->number) < 1e15)
+        value->number >= 0 && value->number < 1e15)
       return fmt::format("{:.0f}", value->number);
-    reader_.report(key, fmt::format("'{}' of [published] is {}", key, text::kind_name(value->kind)),
-                   "a text");
+    const bool is_number = value->kind == text::Value::Kind::number;
+    reader_.report(key,
+                   fmt::format("'{}' of [published] is {}", key,
+                               is_number ? fmt::format("{}", value->number) : text::kind_name(value->kind)),
+                   "a text, or a whole number from 0 on");
     return {};
   }
 
@@ -101,6 +108,12 @@ class PublishedReader {
       reader_.report("plot",
                      fmt::format("'plot' of [published] names {}", names.empty() ? "nothing" : "one output"),
                      R"(["y", "x"]: y against x, the last along the horizontal axis)");
+    }
+    for (auto name = names.begin(); name != names.end(); ++name) {
+      if (std::find(names.begin(), name, *name) == name) continue;
+      reader_.report("plot", fmt::format("'plot' of [published] names '{}' twice", *name),
+                     "each output once, and the last along the horizontal axis");
+      return;
     }
   }
 
@@ -130,6 +143,10 @@ class PublishedReader {
     expected.output = name.value_or("");
     value.label = reader.string("label").value_or("");
     value.because = reader.string("because").value_or("");
+    value.tried = reader.string("tried").value_or("");
+    if (!value.because.empty() && !value.tried.empty())
+      reader.report("tried", "[[published.value]] has 'because' and 'tried'",
+                    "the one where the difference is explained, the other where it is not");
     const bool good_time = read_at(reader, expected);
     const auto unit = read_unit(reader, value);
     if (const text::Value* const set = reader.table("set"))
@@ -257,6 +274,7 @@ std::string write_published(const Published& published) {
     if (!text.empty() || key == "author" || key == "title") line(key, text::toml_string(text));
     if (key == "in" && published.year) line("year", fmt::format("{}", *published.year));
   }
+  if (published.leads) line("leads", "true");
   if (!published.plot.empty()) line("plot", list_text(published.plot));
   if (!published.errata.empty()) line("errata", list_text(published.errata));
   for (const PublishedValue& value : published.values) {
@@ -269,6 +287,7 @@ std::string write_published(const Published& published) {
     line("at", at_text(value.expected));
     if (!value.set.empty()) line("set", settings_text(value.set));
     if (!value.because.empty()) line("because", text::toml_string(value.because));
+    if (!value.tried.empty()) line("tried", text::toml_string(value.tried));
   }
   return out;
 }

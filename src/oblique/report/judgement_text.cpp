@@ -70,6 +70,17 @@ std::string machine_text(const commission::DiagramOnMachine& patched,
   if (patched.made.time != 1)
     text += fmt::format("1 s of the diagram takes {:g} s on the machine\n", patched.made.time);
   text += use_text(patched.made.scales);
+  constexpr double kLongRun = 3600;      // [s]
+  constexpr double kSmallSignal = 1e-4;  // [machine unit] what a good multiplier errs by
+  if (const double until = patched.made.diagram.run.until; until > kLongRun)
+    text += fmt::format("warning: its run takes {:.2g} s there, {:.2g} hours: integrators drift\n", until,
+                        until / 3600);
+  std::size_t small = 0;
+  for (const machine::SignalScale& scale : patched.made.scales) small += scale.largest < kSmallSignal ? 1 : 0;
+  if (small > 0)
+    text += fmt::format(
+        "warning: {} below {:g} of the machine unit all the time: in the errors of the elements\n",
+        small == 1 ? "one signal stays" : fmt::format("{} signals stay", small), kSmallSignal);
   for (const machine::GeneratedFunction& function : patched.made.functions) {
     text += fmt::format("{} ({}): {} straight lines from {:.4g} to {:.4g}, within {:.2g}\n", function.signal,
                         function.block, function.segments, function.low, function.high, function.error);

@@ -57,7 +57,7 @@ TEST(Agreement, IsATableOfDifferencesOverUncertainties) {
                   ElementsAre("three", "x at end", "1.05", "0.1", "m", "1", "0.5", ""),
                   ElementsAre("three", "x at end", "102", "1", "cm", "100", "2", "explained"),
                   ElementsAre("three", "the third", "0.75", "0.1", "m", "1", "2.5", "DIFFERS")));
-  EXPECT_FALSE(all_explained(programmes));
+  EXPECT_FALSE(all_known(programmes));
 }
 
 TEST(Agreement, NamesNoUnitOfWhatHasNone) {
@@ -85,10 +85,10 @@ TEST(Agreement, CountsWhatAgrees) {
   EXPECT_EQ(
       agreement_summary({programme(kThree), programme(head + "picture = \"a line\"\n"),
                          programme(head + "kind = \"equations\"\n")}),
-      "3 programmes, 3 published values: 1 within the uncertainty that was stated, 1 beyond it and "
+      "3 programmes, 3 published values: 1 within their uncertainty, 1 beyond it and "
       "explained, 1 unexplained; 1 programme held against a picture alone; 1 programme without a published "
       "result");
-  EXPECT_TRUE(all_explained({programme(head + "kind = \"equations\"\n")}));
+  EXPECT_TRUE(all_known({programme(head + "kind = \"equations\"\n")}));
 }
 
 class ProgrammeFolder : public ::testing::Test {
@@ -128,7 +128,7 @@ TEST(Atlas, AgreesWithWhatWasPublished) {
   for (const auto& file : programmes_in(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/atlas"))
     programmes.push_back(run_programme(file, text::read_file(file), testing::shipped_blocks()));
   std::cout << agreement_table(programmes).text(2) << agreement_summary(programmes) << "\n";
-  EXPECT_TRUE(all_explained(programmes));
+  EXPECT_TRUE(all_known(programmes));
 }
 
 }  // namespace

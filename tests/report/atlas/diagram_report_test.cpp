@@ -157,23 +157,37 @@ TEST(DiagramReport, SaysWhatAnAmplifierSolvesFor) {
               HasSubstr("<span>0 = y − 0.05,   solved for y</span>"));
 }
 
-// No machine has sines as elements, but it is not for want of anything that they are not there.
-TEST(DiagramReport, TellsWhatIsToBeMadeForAMachine) {
+// No machine has steps and sines as elements: the verdict is on what they are made of.
+TEST(DiagramReport, TellsWhichMachinesTakeIt) {
   const std::string page = page_of(R"toml(format = "oblique-diagram/1"
 [run]
 until = 1
 [blocks]
-x = { type = "constant", value = 5000 }
-y = { type = "sine", in = "0.001*x" }
-z = { type = "multiplier", x = "y", y = "x" }
+u = { type = "step", at = 0.5, to = 5000 }
+x = { type = "integrator", in = ["u", "-x"] }
+z = { type = "sine", in = "0.001*x" }
 [outputs]
 z = "z"
 )toml");
-  EXPECT_THAT(page, HasSubstr("<td>as it is drawn it has blocks that are no elements: sine (1)</td>"));
-  EXPECT_THAT(page, HasSubstr("sine (1); missing: multipliers (1)</td>"));  // of a Heathkit EC-1
+  EXPECT_THAT(page, HasSubstr("<td>EAI PACE TR-10 (1959)</td><td>it fits</td>"));
+  EXPECT_THAT(page,
+              HasSubstr("<td>Comdyna GP-6</td><td>it does not fit; missing: function generators (1)</td>"));
   EXPECT_THAT(page, HasSubstr("overloads a real machine, unless it is scaled for one."));
-  EXPECT_THAT(page, HasSubstr("<td>4795 times</td>"));  // 5000 |sin 5|
-  EXPECT_THAT(page, HasSubstr("<td>96 %</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>5000 times</td>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"n\">1</td>"));  // the sine, on its way to 1.967 rad
+}
+
+// What a function generator is set to stands below the equations, by the name that these give it.
+TEST(DiagramReport, ListsThePointsOfFunctions) {
+  const std::string page = page_of(R"toml(format = "oblique-diagram/1"
+[run]
+until = 1
+[blocks]
+x = { type = "integrator", in = ["f"], initial = 0.5 }
+f = { type = "function-generator", in = "x", points = [[-1, 0.75], [0, 0], [1, -0.25]] }
+)toml");
+  EXPECT_THAT(page, HasSubstr("dx/dt = table1(x)"));
+  EXPECT_THAT(page, HasSubstr("<td>table1</td><td>(−1, 0.75), (0, 0), (1, −0.25)</td>"));
 }
 
 TEST(DiagramReport, HoldsWhatWasPublished) {
@@ -186,7 +200,7 @@ TEST(DiagramReport, HoldsWhatWasPublished) {
                           HasSubstr("x maximum differs: the ink was thick."),
                           HasSubstr("<a href=\"index.html\">"), HasSubstr("<a href=\"studio.html#abc\">")));
   EXPECT_THAT(page_of(kReported + "[published]\nauthor = \"A\"\ntitle = \"T\"\nkind = \"equations\"\n"),
-              AllOf(HasSubstr("Composed here: no result of a machine was published."),
+              AllOf(HasSubstr("Composed here: no circuit, or no result of a machine, was published."),
                     HasSubstr("No value was published to hold the run against.")));
 }
 

@@ -88,6 +88,7 @@ Table agreement_table(const std::vector<Programme>& programmes) {
                  fmt::format("{:.2g}", result.in_uncertainties()),
                  result.met()            ? ""
                  : result.is_explained() ? "explained"
+                 : result.is_known()     ? "not explained"
                                          : "DIFFERS"});
     }
   }
@@ -105,11 +106,11 @@ std::string agreement_summary(const std::vector<Programme>& programmes) {
     if (programme.results.empty() && !programme.diagram.published->picture.empty()) ++pictures;
     if (programme.diagram.published->kind == diagram::Published::Kind::equations) ++composed;
   }
-  std::string text = fmt::format(
-      "{}, {}: {} within the uncertainty that was stated, {} beyond it and explained, {} unexplained",
-      count(programmes.size(), "programme", "programmes"),
-      count(values, "published value", "published values"), agree, explained,
-      agree + explained == values ? "none" : fmt::format("{}", values - agree - explained));
+  std::string text =
+      fmt::format("{}, {}: {} within their uncertainty, {} beyond it and explained, {} unexplained",
+                  count(programmes.size(), "programme", "programmes"),
+                  count(values, "published value", "published values"), agree, explained,
+                  agree + explained == values ? "none" : fmt::format("{}", values - agree - explained));
   if (pictures > 0)
     text += fmt::format("; {} held against a picture alone", count(pictures, "programme", "programmes"));
   if (composed > 0)
@@ -117,10 +118,10 @@ std::string agreement_summary(const std::vector<Programme>& programmes) {
   return text;
 }
 
-bool all_explained(const std::vector<Programme>& programmes) {
+bool all_known(const std::vector<Programme>& programmes) {
   return std::all_of(programmes.begin(), programmes.end(), [](const Programme& programme) {
     return std::all_of(programme.results.begin(), programme.results.end(),
-                       [](const PublishedResult& result) { return result.is_explained(); });
+                       [](const PublishedResult& result) { return result.is_known(); });
   });
 }
 

@@ -38,6 +38,6 @@ Table agreement_table(const std::vector<Programme>& programmes);
 std::string agreement_summary(const std::vector<Programme>& programmes);
 
 /// Whether every value agrees, or its file says why not.
-bool all_explained(const std::vector<Programme>& programmes);
+bool all_known(const std::vector<Programme>& programmes);
 
 }  // namespace oblique::report

@@ -79,11 +79,24 @@ std::string element_of(const diagram::BlockDefinition& definition) {
   return capitalised(std::move(name));
 }
 
+/// "C. Giles and B. Ulmann": each of them.
+std::vector<std::string> people_of(std::string authors) {
+  for (std::size_t at = authors.find(" and "); at != std::string::npos; at = authors.find(" and "))
+    authors.replace(at, 5, ", ");
+  std::vector<std::string> people;
+  for (std::size_t begin = 0; begin <= authors.size();) {
+    const std::size_t end = std::min(authors.find(", ", begin), authors.size());
+    if (end > begin) people.push_back(authors.substr(begin, end - begin));
+    begin = end + 2;
+  }
+  return people;
+}
+
 Facets facets_of(const Programme& programme, const diagram::BlockLibrary& blocks) {
   const diagram::Published& published = *programme.diagram.published;
   Facets facets;
   facets.year = {published.year ? fmt::format("{}", *published.year) : "unknown"};
-  facets.author = {published.author};
+  facets.author = people_of(published.author);
   const std::string& profile = programme.diagram.machine.profile;
   facets.machine = {!published.machine.empty() ? published.machine : diagram::find_machine(profile)->title};
   facets.subject = {published.subject.empty() ? "other" : published.subject};
@@ -151,9 +164,9 @@ class SiteWriter {
     page.element("</div>");
     page.heading("Agreement");
     page.introduction(
-        "What was published against what is computed; the difference is over the uncertainty that was "
-        "stated, and "
-        "up to 1 of it is agreement. The page of a programme says why one differs by more.");
+        "What was published against what is computed; the difference is over the uncertainty that the author "
+        "stated, or that of reading what was published, and up to 1 of it is agreement. The page of a "
+        "programme says why one differs by more.");
     add_agreement(page);
     page.heading("Errata");
     page.introduction("What was found wrong in the publications.");

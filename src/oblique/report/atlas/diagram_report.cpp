@@ -13,6 +13,7 @@
 #include <oblique/draw/schematic/diagram_drawing.h>
 #include <oblique/machine/component_list.h>
 #include <oblique/machine/role.h>
+#include <oblique/machine/scaled_realisation.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
 #include <oblique/report/atlas/equations.h>
@@ -46,6 +47,16 @@ std::string printed(const RecoveredEquation& equation) {
 /// How much of the machine unit a signal uses.
 std::string use_text(double signal) {
   return signal < 10 ? fmt::format("{:.0f} %", 100 * signal) : readable(signal) + " times";
+}
+
+/// "(0, 0), (0.5, 1)": the points of a function; of many the first.
+std::string points_text(const text::PointTable& points) {
+  constexpr std::size_t kMost = 40;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(kMost, points.x.size()); ++k)
+    text += fmt::format("{}({}, {})", k == 0 ? "" : ", ", readable(points.x[k]), readable(points.y[k]));
+  if (points.x.size() > kMost) text += fmt::format(" … {} in all", points.x.size());
+  return text;
 }
 
 class DiagramWriter {
@@ -90,7 +101,7 @@ class DiagramWriter {
       page_.paragraph(capitalised(diagram::citation(*published)) + ".");
       if (published->address.starts_with("http")) page_.link(published->address, published->address);
       page_.paragraph(published->kind == diagram::Published::Kind::equations
-                          ? "Composed here: no result of a machine was published."
+                          ? "Composed here: no circuit, or no result of a machine, was published."
                           : "The circuit as it was patched" +
                                 (published->machine.empty() ? "." : ", on: " + published->machine + "."));
     } else if (!diagram_.source.empty()) {
@@ -132,9 +143,17 @@ class DiagramWriter {
         "stand in their units, other signals in machine units; t is the time of the run in seconds. "
         "Every integrator operates here, and the amplifiers are ideal.");
     std::string lines;
-    for (const RecoveredEquation& equation : recovered_equations(with_ideal_amplifiers(ideal_circuit())))
+    const diagram::FlatDiagram circuit = with_ideal_amplifiers(ideal_circuit());
+    for (const RecoveredEquation& equation : recovered_equations(circuit))
       lines += "<span>" + draw::escape_xml(printed(equation)) + "</span>";
     page_.element("<pre>" + lines + "</pre>");
+    const std::vector<text::PointTable> tables = recovered_tables(circuit);
+    if (tables.empty()) return;
+    page_.introduction("Functions by straight lines from point to point, in machine units:");
+    Table table({"function", "points"});
+    for (std::size_t k = 0; k < tables.size(); ++k)
+      table.add({fmt::format("table{}", k + 1), points_text(tables[k])});
+    page_.table(table.rows());
   }
 
   void curves() {
@@ -178,15 +197,19 @@ class DiagramWriter {
       return;
     }
     page_.introduction(
-        "The uncertainty is what the author stated, or that of reading the published plot; the difference is "
+        "The uncertainty is what the author stated, or that of reading what was published; the difference is "
         "a part of it, and up to 1 of it is "
         "agreement.");
     std::vector<std::vector<std::string>> rows = agreement_table({programme_}).rows();
     for (std::vector<std::string>& row : rows) row.erase(row.begin());  // the programme's name
     page_.table(rows);
     for (const PublishedResult& result : programme_.results) {
+      const std::string name = diagram::name_of(result.value);
       if (!result.met() && result.is_explained())
-        page_.paragraph(fmt::format("{} differs: {}.", diagram::name_of(result.value), result.value.because));
+        page_.paragraph(fmt::format("{} differs: {}.", name, result.value.because));
+      if (!result.met() && !result.value.tried.empty())
+        page_.paragraph(
+            fmt::format("{} differs, and that is not explained. Tried: {}.", name, result.value.tried));
     }
   }
 
@@ -342,18 +365,28 @@ class DiagramWriter {
       page_.table(component_list_table(*check.components).rows());
       page_.paragraph(capitalised(verdict_text(*check.components)) + ".");
     }
-    page_.introduction("Whether other machines have the elements that it takes, as it is drawn; " +
-                       text::Remedy{text::Action{"patch", diagram_.file},
-                                    " scales it for a machine, and makes blocks that are no elements of what "
-                                    "the machine has:"}
-                           .words(report_.vocabulary));
+    page_.introduction(
+        "Whether other machines have what it takes, once it is made of their elements and scaled for "
+        "them, as " +
+        text::Remedy{text::Action{"patch", diagram_.file}, " does:"}.words(report_.vocabulary));
     Table table({"machine", "verdict"});
     for (const std::string& name : diagram::machine_names()) {
       if (name == "ideal" || name == diagram_.machine.profile) continue;
-      const machine::ComponentList list = machine::component_list_of(flat_, *diagram::find_machine(name));
-      table.add({list.machine, verdict_text(list)});
+      const diagram::MachineProfile& other = *diagram::find_machine(name);
+      table.add({other.title, verdict_on(other)});
     }
     page_.table(table.rows());
+  }
+
+  /// Whether a machine has what the diagram takes in its elements.
+  std::string verdict_on(const diagram::MachineProfile& machine) const {
+    try {
+      const machine::ScaledRealisation made = machine::realise_scaled(diagram_, report_.blocks, machine);
+      return verdict_text(
+          machine::component_list_of(diagram::flatten(made.diagram, report_.blocks), machine));
+    } catch (const text::Error& error) {
+      return "it cannot be put onto it: " + error.diagnostics().front().what;
+    }
   }
 
   const DiagramReport& report_;

@@ -274,4 +274,8 @@ std::vector<RecoveredEquation> recovered_equations(const diagram::FlatDiagram& d
   return EquationReader(as_operated(diagram), digits).read();
 }
 
+std::vector<text::PointTable> recovered_tables(const diagram::FlatDiagram& diagram) {
+  return network::assemble(as_operated(diagram)).tables;
+}
+
 }  // namespace oblique::report

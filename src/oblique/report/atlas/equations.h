@@ -26,4 +26,7 @@ diagram::FlatDiagram as_operated(diagram::FlatDiagram diagram);
 /// Numbers have `digits` significant digits. Throws NetworkError.
 std::vector<RecoveredEquation> recovered_equations(const diagram::FlatDiagram& diagram, int digits = 6);
 
+/// The points of table1, table2 … in these equations, in machine units.
+std::vector<text::PointTable> recovered_tables(const diagram::FlatDiagram& diagram);
+
 }  // namespace oblique::report

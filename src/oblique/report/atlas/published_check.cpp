@@ -103,12 +103,14 @@ std::string to_text(const std::vector<PublishedResult>& results) {
   std::string text;
   for (const PublishedResult& result : results) {
     const diagram::PublishedValue& value = result.value;
-    const char* const verdict = result.met() ? "ok    " : result.is_explained() ? "known " : "FAILED";
+    const char* const verdict = result.met() ? "ok    " : result.is_known() ? "known " : "FAILED";
     text += fmt::format("{}  {} = {}, published {} ± {}{}: off by {:.2g} times that\n", verdict,
                         diagram::name_of(value), number_within(result.actual, value.expected.within),
                         value.expected.value, value.expected.within,
                         value.unit.empty() ? "" : " " + value.unit, result.in_uncertainties());
     if (!result.met() && !value.because.empty()) text += fmt::format("        because {}\n", value.because);
+    if (!result.met() && !value.tried.empty())
+      text += fmt::format("        not explained; tried: {}\n", value.tried);
   }
   return text;
 }

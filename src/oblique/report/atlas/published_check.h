@@ -22,6 +22,8 @@ struct PublishedResult {
   bool met() const { return in_uncertainties() <= 1; }
   /// Met, or the file says why it is not.
   bool is_explained() const { return met() || !value.because.empty(); }
+  /// That, or the file says what was tried to explain it.
+  bool is_known() const { return is_explained() || !value.tried.empty(); }
 };
 
 /// What a run of the diagram as it stands is to be asked for: the published values that set nothing.
