@@ -225,6 +225,18 @@ x = { type = "integrator", in = "-x", initial = 1 }
   EXPECT_THAT(checked.out, HasSubstr("as it is drawn it has blocks that are no elements: integrator (1)\n"));
 }
 
+TEST_F(PatchForMachine, RefusesAFolderAsTheBeginningOfNames) {
+  write("sheets/other.txt", "");
+  write(
+      "decay.toml",
+      "format = \"oblique-diagram/1\"\n[blocks]\nx = { type = \"integrator\", in = \"-x\", initial = 1 }\n");
+  const Outcome refused = oblique("patch decay.toml --machine tr-10 --sheets sheets");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.err,
+            "error: --sheets sheets is a folder; expected what the names of the sheets begin with\n"
+            "  remedy: --sheets sheets/sheet\n");
+}
+
 // `run` has an option for the end of a run, and `patch` has none.
 TEST_F(PatchForMachine, NamesOnlyItsOwnOptions) {
   write("escapes.toml", R"toml(format = "oblique-diagram/1"

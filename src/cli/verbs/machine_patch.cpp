@@ -2,6 +2,7 @@
 #include "verbs/machine_patch.h"
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -173,6 +174,12 @@ void check_machine_request(const PatchRequest& request) {
   if (diagram::find_machine(request.machine) == nullptr)
     throw text::ReadError(diagram::unknown_machine(request.machine));
   if (request.sheets.empty()) return;
+  if (std::filesystem::is_directory(request.sheets) || request.sheets.ends_with('/'))
+    throw text::ReadError(text::Diagnostic{
+        {},
+        fmt::format("--sheets {} is a folder", request.sheets),
+        "what the names of the sheets begin with",
+        fmt::format("--sheets {}", (std::filesystem::path(request.sheets) / "sheet").string())});
   for (const std::string ending : kSheetEndings) {
     check_output(request.sheets + ending, ending.substr(ending.find('.')));
   }

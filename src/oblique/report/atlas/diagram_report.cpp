@@ -44,6 +44,17 @@ std::string printed(const RecoveredEquation& equation) {
   return text;
 }
 
+/// A line of an equation that may be broken behind a point where it is long, and not within a name.
+std::string breakable(std::string line) {
+  constexpr std::size_t kShort = 80;
+  constexpr std::string_view kTimes = "·", kMayBreak = "·<wbr>";
+  if (line.size() <= kShort) return line;
+  for (std::size_t at = line.find(kTimes); at != std::string::npos;
+       at = line.find(kTimes, at + kMayBreak.size()))
+    line.replace(at, kTimes.size(), kMayBreak);
+  return line;
+}
+
 /// How much of the machine unit a signal uses.
 std::string use_text(double signal) {
   return signal < 10 ? fmt::format("{:.0f} %", 100 * signal) : readable(signal) + " times";
@@ -145,7 +156,7 @@ class DiagramWriter {
     std::string lines;
     const diagram::FlatDiagram circuit = with_ideal_amplifiers(ideal_circuit());
     for (const RecoveredEquation& equation : recovered_equations(circuit))
-      lines += "<span>" + draw::escape_xml(printed(equation)) + "</span>";
+      lines += "<span>" + breakable(draw::escape_xml(printed(equation))) + "</span>";
     page_.element("<pre>" + lines + "</pre>");
     const std::vector<text::PointTable> tables = recovered_tables(circuit);
     if (tables.empty()) return;
