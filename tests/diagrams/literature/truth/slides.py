@@ -127,3 +127,24 @@ def slide_behind_an_amplifier():
     begins, ends = _arrives()
     mean = np.cosh(1) * (ends - begins) + 0.15 * np.sinh(1) * (ends**2 - begins**2)
     return {"e at 4": np.e * (begins + 4 - ends) + mean, "x at 4": free(4) - free(ends)}
+
+
+def two_surfaces_in_small_units():
+    """x′ = −u − v/2 + 0.6 sin t, y′ = 0.4 u − v + 1.1 cos 0.7 t with u = sign x, v = sign y (A. F. Filippov 1960), which
+    slides along both lines, leaves them tangentially, and comes back; in units of 1e-5."""
+    motion = _friction([0.5, -0.3], 20,
+                       lambda t, y, q: [q[0] + 0.5 * q[1] + 0.6 * np.sin(t),
+                                        -0.4 * q[0] + q[1] + 1.1 * np.cos(0.7 * t)],
+                       lambda y: y, [_ONE] * 2)
+    return {f"{name} at {t}": motion(t)[k] for t in (0.3, 5.5, 5.78, 7, 9.4, 15) for k, name in enumerate("xy")}
+
+
+def three_blocks_in_small_units():
+    """Blocks of masses 2, 1 and 1/2 on each other with dry friction 1.2 (on the ground, the lowest on a spring of 1/2), 0.6
+    and 0.25, the middle one pulled by 3 sin 1.3 t; in units of 1e-6."""
+    motion = _friction([0, 0, 0, 0], 25,
+                       lambda t, y, q: [y[1], (-0.5 * y[0] + q[0] - q[1]) / 2, 3 * np.sin(1.3 * t) + q[1] - q[2],
+                                        2 * q[2]],
+                       lambda y: np.array([y[1], y[2] - y[1], y[3] - y[2]]),
+                       [lambda w: 1.2, lambda w: 0.6, lambda w: 0.25])
+    return {f"{name} at {t}": motion(t)[k] for t in (1, 3, 5, 10, 20, 25) for k, name in ((2, "v2"), (3, "v3"))}
