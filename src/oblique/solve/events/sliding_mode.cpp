@@ -288,9 +288,9 @@ std::optional<double> SlidingMode::repulsion(std::size_t unit) const {
 }
 
 /// The shares with which no event function moves, but on its way back by so much of what the sides do.
-bool SlidingMode::find_shares(double way_back) {
-  if (units_.size() == 1) return find_only_share(way_back);
-  auto found = shares_of_coupled(sides_, shares_, kReturn / span_, way_back);
+bool SlidingMode::find_shares(double most_back) {
+  if (units_.size() == 1) return find_only_share(most_back);
+  auto found = shares_of_coupled(sides_, shares_, kReturn / span_, most_back);
   if (!found) return false;
   shares_ = std::move(*found);
   return true;

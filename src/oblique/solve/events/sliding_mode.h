@@ -101,8 +101,8 @@ class SlidingMode {
   void load(const SlideSide& side);
   void load_base();
   bool evaluate(SlideSide& side, double t, std::span<const double> x);
-  bool find_shares(double way_back);
-  bool find_only_share(double way_back);
+  bool find_shares(double most_back);
+  bool find_only_share(double most_back);
   /// Of a unit that nothing couples, the rates of its event function on its two sides.
   struct Drives {
     double above = 0, below = 0;

@@ -2,6 +2,7 @@
 #include <oblique/solve/operating_point/run_start.h>
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -51,29 +52,25 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
       throw loop_error(program, parts.workspace.trouble(), t, file);
   };
   const std::vector<double> begun = states;
-  const auto settles = [&] {
+  const auto trouble_of_settling = [&]() -> std::optional<SolveError> {
     try {
       settle_all();
-      return true;
+      return std::nullopt;
     } catch (const SolveError& error) {
-      if (error.kind() != SolveError::Kind::singular_loop) throw;
-      return false;
+      return error;
     }
   };
-  if (settles()) return warnings;
+  const std::optional<SolveError> trouble = trouble_of_settling();
+  if (!trouble) return warnings;
+  if (trouble->kind() != SolveError::Kind::singular_loop) throw SolveError(*trouble);
   // What an ideal amplifier's loop is made of may have to come to rest before it has a solution.
-  if (parts.options.settle && rest_past_loops(program, parts.workspace, t, states) && settles())
+  if (parts.options.settle && rest_past_loops(program, parts.workspace, t, states) && !trouble_of_settling())
     return warnings;
   states = begun;
   parts.workspace.reset();
-  try {
-    settle_all();
-  } catch (const SolveError& error) {
-    if (error.kind() != SolveError::Kind::singular_loop ||
-        !hold_singular_start(program, parts.workspace, t, states, parts.options.until - t))
-      throw;
-    settle_all();
-  }
+  if (!hold_singular_start(program, parts.workspace, t, states, parts.options.until - t))
+    throw SolveError(*trouble);
+  settle_all();
   return warnings;
 }
 
