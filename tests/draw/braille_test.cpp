@@ -92,6 +92,20 @@ TEST(Braille, KeepsToTheWidth) {
   }
 }
 
+// Without names the plot ends at the right edge: the last number, of four letters, stands before its tick.
+TEST(Braille, KeepsTheLastNumberWithinTheWidth) {
+  const Chart chart{"", {{{"t", "s"}, {"", "m"}, {{"", {{0, 0}, {1000, 1}}}}}}};
+  for (const std::size_t columns : {40U, 61U, 80U}) {
+    const auto lines = lines_of(to_braille(chart, columns, false));
+    const auto numbers = std::find_if(lines.begin(), lines.end(), [](const std::u32string& line) {
+      return line.find(U"1000") != std::u32string::npos;
+    });
+    ASSERT_NE(numbers, lines.end());
+    EXPECT_EQ(numbers->size(), columns);
+    for (const auto& line : lines) EXPECT_LE(line.size(), columns);
+  }
+}
+
 TEST(Braille, ColoursCurvesWhereAsked) {
   EXPECT_THAT(to_braille(ramp(), 70, true), HasSubstr("\033[34mup\033[0m"));
 }

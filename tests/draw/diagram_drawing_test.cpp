@@ -315,5 +315,45 @@ j = { type = "jk-flip-flop", clock = "s", j = "s", k = "s", reset = "s" }
   EXPECT_EQ(circles, 2);
 }
 
+// The number of an amplifier stands in its triangle, and its name below it; a label that is none takes the
+// place of the name.
+TEST(DiagramDrawing, WritesNumbersOfAmplifiersIntoThem) {
+  for (const std::string number : {"9", "A0", "12"}) {
+    const auto written = texts(draw_diagram(
+        diagram("total = { type = \"summer\", in = [\"total\"], label = \"" + number + "\" }"), library()));
+    EXPECT_THAT(written, testing::IsSupersetOf({number, std::string("total")})) << number;
+  }
+  const auto written = texts(
+      draw_diagram(diagram("total = { type = \"summer\", in = [\"total\"], label = \"sum\" }"), library()));
+  EXPECT_THAT(written, testing::Contains("sum"));
+  EXPECT_THAT(written, testing::Not(testing::Contains("total")));
+}
+
+// A composite of a composite of two blocks gives what its innermost last block gives.
+TEST(DiagramDrawing, NamesSignalsThatComeThroughTwoComposites) {
+  diagram::BlockLibrary own = library();
+  const std::string head = "format = \"oblique-block/1\"\ntitle = \"T\"\n[inputs]\nin = {}\n[outputs]\n";
+  own.add(diagram::parse_block(head + R"(out = { wire = "second" }
+[blocks]
+first = { type = "inverter", in = "in" }
+second = { type = "squarer", in = "first" }
+)",
+                               "inner.toml", "inner"));
+  own.add(diagram::parse_block(head + R"(out = { wire = "deep.first" }
+whole = { wire = "deep" }
+[blocks]
+deep = { type = "inner", in = "in" }
+)",
+                               "outer.toml", "outer"));
+  const Picture picture = draw_diagram(diagram(R"(
+a = { type = "sine-source" }
+q = { type = "outer", in = "a" }
+s = { type = "summer", in = ["q.out", "q.whole", "q.deep.first"] }
+)"),
+                                       own);
+  EXPECT_EQ(find_mark(picture, "net-q.out")->signals, "q.deep.first");
+  EXPECT_EQ(find_mark(picture, "net-q.whole")->signals, "q.deep.second");
+}
+
 }  // namespace
 }  // namespace oblique::draw

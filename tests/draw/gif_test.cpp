@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <oblique/draw/picture/palette.h>
+
 #include "../support/gif_reading.h"
 
 namespace oblique::test {
@@ -89,6 +91,16 @@ TEST(Gif, KeepsNearToMoreColoursThanItHas) {
       ASSERT_LE(std::hypot(is.red - was.red, is.green - was.green, is.blue - was.blue), 31);
     }
   }
+}
+
+// Three dark pixels, then two white ones: the last run of a picture counts as every other.
+TEST(Gif, KeepsTheMostFrequentOfItsColours) {
+  draw::ColourCount count;
+  count.add({5, 1, {kInk, kInk, kInk, kPaper, kPaper}});
+  EXPECT_EQ(count.palette(1), std::vector<draw::Rgb>{kInk});
+  count.add({3, 1, {kInk, kPaper, kPaper}});
+  count.add({1, 1, {kPaper}});
+  EXPECT_EQ(count.palette(1), std::vector<draw::Rgb>{kPaper});
 }
 
 // Without dithering a colour is always shown as the same one, wherever and whenever it stands.

@@ -81,5 +81,22 @@ TEST(HeatMap, CrossesOutWhatIsNotKnown) {
   EXPECT_LT(place_of(picture, "cell-0-1-1"), picture.marks.size());
 }
 
+// The longest number begins where the title does; none is cut off.
+TEST(HeatMap, LeavesRoomForTheNumbersOnTheLeft) {
+  HeatMap map = product(false);
+  map.ys = {100000, 300000};
+  const Picture picture = draw_heat_maps("", {map}, "");
+  const double frame = box_of(picture.marks[place_of(picture, "plot-0")]).min().x();
+  double title = frame, numbers = frame;
+  for (const Mark& mark : picture.marks) {
+    const auto* const label = std::get_if<Label>(&mark.shape);
+    if (label == nullptr || extent_of(mark).max().x() > frame + 100) continue;
+    if (label->anchor == Anchor::start) title = std::min(title, extent_of(mark).min().x());
+    if (label->anchor == Anchor::end) numbers = std::min(numbers, extent_of(mark).min().x());
+  }
+  EXPECT_LT(title, frame);
+  EXPECT_NEAR(numbers, title, 1.01);  // the frame stands at a whole pixel
+}
+
 }  // namespace
 }  // namespace oblique::draw

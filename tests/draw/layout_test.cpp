@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/draw/layout/layout.h>
 
+#include <cmath>
 #include <random>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <oblique/draw/layout/layering.h>
 
 #include "layout_check.h"
 
@@ -146,6 +150,53 @@ TEST(Layout, IsTheSameEveryTime) {
   for (std::size_t v = 0; v < 30; ++v) graph.wires.push_back({(7 * v + 3) % 30, 0, v, v % 2});
   const DiagramLayout one = lay_out(graph), two = lay_out(graph);
   EXPECT_EQ(one.corners, two.corners);
+}
+
+// Node 0 feeds a knot of loops whose node 1 gives more than it takes. Wires that close loops run back, and
+// not the one from the source: neither where the knot beside it, in which the signals are followed the wrong
+// way round, is at its best.
+TEST(Layout, ASourceStandsBeforeTheLoopsThatItFeeds) {
+  LayoutGraph graph;
+  graph.nodes = {plain_box(0, 1), plain_box(2, 4), plain_box(1, 1), plain_box(1, 1), plain_box(1, 1),
+                 plain_box(1, 1), plain_box(4, 1), plain_box(1, 1), plain_box(1, 1)};
+  graph.wires = {{0, 0, 1, 0}, {6, 0, 1, 1}, {7, 0, 8, 0, 1}, {8, 0, 7, 0, 5}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    graph.wires.push_back({1, k, 2 + k, 0});
+    graph.wires.push_back({2 + k, 0, 6, k});
+  }
+  const std::vector<std::size_t> layers = layered::assign_layers(graph);
+  EXPECT_LT(layers[8], layers[7]);
+  EXPECT_LT(layers[0], layers[1]);
+  EXPECT_LT(layers[1], layers[6]);
+}
+
+// A chain of boxes, wider than 2400 px, that are a third as high as it is wide.
+TEST(Layout, AStripThreeTimesAsWideAsHighIsBrokenIntoRows) {
+  const auto chain = [](std::size_t n, double height) {
+    LayoutGraph graph;
+    for (std::size_t k = 0; k < n; ++k) {
+      graph.nodes.push_back(plain_box(k > 0 ? 1 : 0, k + 1 < n ? 1 : 0));
+      graph.nodes.back().size.y() = height;
+      if (k > 0) graph.wires.push_back({k - 1, 0, k, 0});
+    }
+    return graph;
+  };
+  const DiagramLayout pair = lay_out(chain(2, 80));
+  const double pitch = pair.corners[1].x() - pair.corners[0].x();
+  const auto n = static_cast<std::size_t>(2500 / pitch) + 2;
+  const double width = pitch * static_cast<double>(n - 1) + 64;
+  const double height = kLayoutGrid * std::round(width / 3 / kLayoutGrid);
+  const LayoutGraph graph = chain(n, height);
+  const DiagramLayout layout = lay_out(graph);
+  expect_sound(graph, layout);
+  std::set<double> rows;
+  double right = 0;
+  for (const Eigen::Vector2d& corner : layout.corners) {
+    rows.insert(corner.y());
+    right = std::max(right, corner.x() + 64);
+  }
+  EXPECT_EQ(rows.size(), 2U);
+  EXPECT_LT(right, 0.7 * width);
 }
 
 }  // namespace

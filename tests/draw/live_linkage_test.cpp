@@ -74,5 +74,21 @@ TEST(LiveLinkage, DrawsTheAnalogMechanismWhereItIsTold) {
   EXPECT_EQ(fewer.size(), drawn.size() - 3);  // the pin and the two links that it joins
 }
 
+// The connecting rod always lies to the left of the piston: its name stands clear of the rod, all the way.
+TEST(LiveLinkage, KeepsTheNameOfAPistonOffItsRod) {
+  const mechanism::Mechanism mechanism = shipped("slider-crank");
+  const mechanism::Motion motion = mechanism::solve_motion(mechanism, 61);
+  const draw::LiveLinkage live(mechanism, scene_of(motion));
+  const std::size_t pin = mechanism.find_point("C").value(), crank = mechanism.find_point("B").value();
+  for (const mechanism::Configuration& here : motion.configurations) {
+    const std::vector<draw::Mark> marks = live.exact(here);
+    const draw::Mark* const name = find_in(marks, "name-C");
+    ASSERT_NE(name, nullptr);
+    const Vector2d from = live.pixel(here.points[crank].position), to = live.pixel(here.points[pin].position);
+    for (int k = 0; k <= 100; ++k)
+      EXPECT_FALSE(draw::extent_of(*name).contains(Vector2d(from + k / 100.0 * (to - from))));
+  }
+}
+
 }  // namespace
 }  // namespace oblique::test
