@@ -6,10 +6,12 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include <oblique/ensemble/engine/ensemble.h>
+#include <oblique/ensemble/lanes/lane_method.h>
 #include <oblique/network/assembly/parameter_numbers.h>
 
 #include "../support/compiled.h"
@@ -457,6 +459,22 @@ TEST(LaneRunner, LoopsThatDoNotSettleAreLeftToCvodes) {
   EXPECT_EQ(roots.count.in_lanes, 4U);
   EXPECT_EQ(roots.count.failed, 4U);
   for (const std::uint64_t k : {0U, 1U, 2U, 3U}) EXPECT_NEAR(all.at(k).back(), std::sqrt(0.5), 1e-5) << k;
+}
+
+// With the first terms of (1.5 + x)^(−1/p) about x = 0, of which the next are left out: less than
+// (1/3)⁵/10 = 4e-4 for |x| ≤ 1/2.
+TEST(LaneRunner, MakesTheNextStepLongerByTheRootOfTheError) {
+  for (const int p : {5, 7}) {
+    double root[5] = {std::pow(1.5, -1.0 / p)};
+    for (int n = 1; n < 5; ++n) root[n] = root[n - 1] * (-1.0 / p - (n - 1)) / n / 1.5;
+    std::vector<double> powers(static_cast<std::size_t>(p));
+    for (int k = 0; k < p; ++k)
+      powers[static_cast<std::size_t>(k)] = std::pow(2.0, -static_cast<double>(k) / p);
+    for (double error = 1e-8; error < 1e8; error *= 1.1) {
+      const double exact = std::clamp(0.9 * std::pow(error, -1.0 / p), 0.2, 6.0);
+      EXPECT_NEAR(step_factor_of(error, p, root, powers.data()) / exact, 1, 5e-4) << error;
+    }
+  }
 }
 
 }  // namespace

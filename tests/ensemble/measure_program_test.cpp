@@ -54,6 +54,19 @@ TEST(Measure, FindsExtremesBetweenRows) {
             1);
 }
 
+// A peak of height 1 at a row, and one of height 1.003 between two rows of which each is below 1, and that
+// are nearly alike. Through six points it is interpolated to (225/64)/6!·120·(1/7)⁶ = 5e-6 of its height.
+TEST(Measure, FindsAPeakBetweenTwoRowsThatAreNearlyAlike) {
+  const auto peak = [](double t) { return std::exp(-t * t / (0.07 * 0.07)); };
+  for (const double at : {0.7049, 0.7051}) {
+    const auto run = sampled(
+        1, 101, [&](double t) { return peak(t - 0.3) + 1.003 * peak(t - at); }, [](double) { return 0; });
+    ASSERT_LT(run.column(1)[70], 1);
+    ASSERT_LT(run.column(1)[71], 1);
+    EXPECT_NEAR(measure("max(x)", run), 1.003, 2e-5);
+  }
+}
+
 TEST(Measure, OvershootsNothingWhereTheRunJumps) {
   const auto step = [](double t) { return t < 0.303 ? -1.0 : 1.0; };
   const auto run = sampled(1, 101, step, [](double t) { return std::abs(t - 0.505); });

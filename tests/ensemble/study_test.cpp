@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/ensemble/study/study.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -315,6 +316,16 @@ TEST(Study, TellsWhichMechanismCannotBe) {
   EXPECT_NE(rows[2].failure, "");
   EXPECT_EQ(rows[2].failure, rows[3].failure);
   EXPECT_TRUE(std::isnan(rows[3].values[2]));
+}
+
+// Of four machines two cannot be made: what is done never is more than there is, and comes to all of it.
+TEST(Study, CountsMechanismsThatAreDone) {
+  const Study study = study_of(mechanism_plan({{"CD", "3,9", {}}, {"gain", "1e3,1e4", {}}}, {}), kFourBar);
+  std::vector<std::uint64_t> done;
+  study.run(0, 4, [&](std::uint64_t n) { done.push_back(n); });
+  ASSERT_FALSE(done.empty());
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_EQ(done.back(), 4U);
 }
 
 TEST(Study, GivesTheSameMechanismsInChunks) {
