@@ -83,6 +83,18 @@ TEST(Sheets, SayWhatPotentiometersStandFor) {
   EXPECT_THAT(pots.rows, Contains(ElementsAre("P6", "0.8333", "M1", "A4 3 inputs ×10", "25 of xy in s")));
 }
 
+TEST(Sheets, ListAPotentiometerThatIsTheFirstBlock) {
+  const Sheet pots = sheets_as_written(R"(
+a = { type = "potentiometer", in = "one", setting = 0.25 }
+one = { type = "constant" }
+x = { type = "integrator", in = ["a"] }
+)")
+                         .potentiometers;
+  ASSERT_EQ(pots.rows.size(), 1U);
+  EXPECT_EQ(pots.rows[0][0], "P1");
+  EXPECT_EQ(pots.rows[0][1], "0.2500");
+}
+
 // x = 0.6, y = −1: ẋ = 2.5 + 0.2, ẏ = 1.5, x·½y = −0.3 [machine unit]; 10 V each.
 TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
   const Sheet test = sheets(ten_volts()).static_test;

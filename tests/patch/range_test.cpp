@@ -102,6 +102,18 @@ TEST(WithinRange, MayStartNextToALimit) {
   EXPECT_NEAR(most, 1.99, 1e-4);
 }
 
+// It sets off the way that the file says, also slowly: 0.3 m/s is less than 1.
+TEST(WithinRange, SetsOffAsTheDriveDoes) {
+  for (const double way : {1.0, -1.0}) {
+    std::string text = kPump;
+    if (way < 0) text.replace(text.find("speed = 0.3"), 11, "speed = -0.3");
+    const mechanism::Motion motion =
+        mechanism::solve_motion(within_range(mechanism::parse_mechanism(text, "pump.toml")), 101);
+    EXPECT_NEAR(motion.drives.front().front().value, 1.4, 1e-12);
+    EXPECT_GT(way * (motion.drives[1].front().value - 1.4), 0);
+  }
+}
+
 class Ranged : public ::testing::TestWithParam<PatchMethod> {};
 INSTANTIATE_TEST_SUITE_P(Patch, Ranged, ::testing::Values(PatchMethod::triangles, PatchMethod::gradient));
 

@@ -74,6 +74,27 @@ TEST(ComparisonChart, DrawsThePartsOfTheErrorsAndALineOfOrderOne) {
   EXPECT_GT(order[1].x(), 1e5);
 }
 
+// Errors of 2/gain lie on a line of slope −1, so that it goes through them.
+TEST(ComparisonChart, DrawsTheFittedSlopeThroughTheErrors) {
+  compare::Comparison comparison;
+  comparison.size = 1;
+  comparison.unit = "m";
+  comparison.drive = {0, 1};
+  const std::vector<double> gains{1e2, 1e3, 1e5};
+  for (const double gain : gains)
+    comparison.runs.push_back(run_of(gain, patch::PatchMethod::triangles, 2 / gain));
+  comparison.series = {{patch::PatchMethod::triangles, 20, 0, 3, {}, -1.0}};
+  const draw::Chart chart = chart_of(comparison);
+  const std::vector<draw::Curve>& curves = chart.panels[0].curves;
+  ASSERT_EQ(curves.size(), 2U);
+  EXPECT_TRUE(curves[1].name.starts_with("slope")) << curves[1].name;
+  ASSERT_EQ(curves[1].points.size(), gains.size());
+  for (std::size_t k = 0; k < gains.size(); ++k) {
+    EXPECT_EQ(curves[1].points[k].x(), gains[k]);
+    EXPECT_NEAR(curves[1].points[k].y() * gains[k], 2, 1e-12);  // roundings of logarithms
+  }
+}
+
 /// So many drawn machines, of which number k errs by k + 1 in both rows.
 MonteCarloReport drawn(std::size_t runs) {
   MonteCarloReport report;

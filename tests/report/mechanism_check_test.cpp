@@ -11,6 +11,7 @@ namespace oblique::report {
 namespace {
 
 using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
 
 std::string check_of(const std::string& name) {
   const std::string path = std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/" + name;
@@ -21,6 +22,27 @@ std::string check_of(const std::string& name) {
 TEST(MechanismCheck, SaysWhatTurnsAndWhatSwings) {
   EXPECT_THAT(check_of("oldham.toml"), ContainsRegex("disc2 +turns left"));
   EXPECT_THAT(check_of("four-bar.toml"), ContainsRegex("CD +swings"));
+}
+
+// The cranks of a parallelogram lie in one line with its frame twice a turn.
+TEST(MechanismCheck, SaysWhereTheDriveStandsAtAChangePoint) {
+  const mechanism::Mechanism parallelogram = mechanism::parse_mechanism(R"(format = "oblique-mechanism/1"
+[frame]
+A = [0, 0]
+D = [80, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 40 }
+BC = { points = ["B", "C"], length = 80 }
+CD = { points = ["C", "D"], length = 40 }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1, start = "60 deg" }
+[sketch]
+C = [100, 35]
+)",
+                                                                        "p.toml");
+  const std::string text = to_text(examine(parallelogram, "p.toml"));
+  EXPECT_THAT(text, HasSubstr("\n  change point of BC-CD at crank = 180.00°\n"
+                              "  change point of BC-CD at crank = 0.00°\n"));
 }
 
 }  // namespace

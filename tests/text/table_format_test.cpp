@@ -58,6 +58,7 @@ TEST(JsonFile, NamesColumnsWithUnitsAndThenRows) {
             "{\"columns\": [{\"name\": \"t\", \"unit\": \"s\"}, {\"name\": \"a\\\"\\\\\\u000a\", \"unit\": "
             "\"mm\"}, {\"name\": \"status\", \"unit\": \"\"}],\n"
             "\"rows\": [\n[0, 1.5, \"ok\"],\n[-0.0, null, \"open\"]\n]}\n");
+  EXPECT_EQ(nlohmann::json::parse(written(".json", named({"a\tb\"c"}), {}))["columns"][0]["name"], "a\tb\"c");
   EXPECT_EQ(nlohmann::json::parse(written(".json", named({"φ"}), {}))["columns"][0]["name"], "φ");
 }
 
