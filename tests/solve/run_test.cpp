@@ -114,6 +114,7 @@ TEST(Run, FindsPeaksOfEverySignal) {
   EXPECT_EQ(peaks[made.signal("x")].value, 1);
   EXPECT_EQ(peaks[made.signal("x")].time, 0);
   EXPECT_EQ(peaks[made.signal("o")].value, 0);
+  EXPECT_EQ(peaks[made.signal("o")].time, 0);
 }
 
 TEST(Run, ScalesOutputsToTheirUnits) {
@@ -184,6 +185,18 @@ TEST(Run, CountsItsWork) {
   EXPECT_GE(work.factorizations, work.jacobians);
   EXPECT_GE(work.jacobians, 1);
   EXPECT_GT(work.last_step, 0);
+}
+
+// A square wave turns over at 0.5, 1, … 9.5: behind each of them a Jacobian is new.
+TEST(Run, CountsTheWorkOfAllItsSegments) {
+  const Compiled made(
+      "g = { type = \"sine-source\", amplitude = 1, frequency = 1 }\n"
+      "c = { type = \"comparator\", in = \"g\" }\n"
+      "x = { type = \"integrator\", in = [\"c\", \"-x\"] }\n");
+  const auto result = run_of(made, {.until = 9.75, .method = diagram::IntegrationMethod::bdf});
+  ASSERT_GE(result.event_count, 19);
+  EXPECT_GE(result.statistics.jacobians, result.event_count);
+  EXPECT_GE(result.statistics.factorizations, result.statistics.jacobians);
 }
 
 // x = e^-t with an absolute tolerance far above it is not looked at; with the usual one it is right.

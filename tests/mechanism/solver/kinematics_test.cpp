@@ -258,5 +258,30 @@ E = [250, 150]
   EXPECT_FALSE(again.group);
 }
 
+// A crank and a rod of the same length: at 90° the rod stands upright over the crank's pivot, and touches the
+// line of its end at one point to the last bit.
+TEST(Kinematics, OfARodThatStandsUprightOnItsLineIsADeadCentre) {
+  const Mechanism isosceles = mechanism(R"([frame]
+A = [0, 0]
+X = [5, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 2 }
+BC = { points = ["B", "C"], length = 2 }
+[slides]
+piston = { point = "C", along = ["A", "X"] }
+[drives]
+crank = { turns = "AB", about = "A", speed = 1, start = "30 deg" }
+[sketch]
+C = [3.4, 0]
+)");
+  const Structure structure = decompose(isosceles);
+  Kinematics kinematics(isosceles, structure);
+  Configuration here = frame_configuration(isosceles);
+  const std::vector<DriveState> drives{{std::numbers::pi / 2, 1, 0}};
+  kinematics.place(drives, here);
+  EXPECT_EQ(here.status, Status::dead_centre);
+  EXPECT_NEAR((here.points[isosceles.find_point("C").value()].position).norm(), 0, 1e-15);
+}
+
 }  // namespace
 }  // namespace oblique::mechanism

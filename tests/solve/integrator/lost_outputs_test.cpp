@@ -2,11 +2,15 @@
 // Outputs that show nothing but the errors of the states.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <oblique/solve/readings/error_signs.h>
 
 #include "../../support/runs.h"
 
@@ -104,6 +108,37 @@ TEST(LostOutput, OfADecayIsNone) {
   EXPECT_FALSE(std::any_of(logarithms.warnings.begin(), logarithms.warnings.end(), [](const auto& warning) {
     return warning.what.find("no digit") != std::string::npos;
   }));
+}
+
+// So it is beside states that are known, wherever they stand among the blocks.
+TEST(LostOutput, OfADecayBehindStatesThatStayIsNone) {
+  const std::string stays =
+      "a = { type = \"integrator\", in = \"b\", initial = 1 }\n"
+      "b = { type = \"integrator\", in = \"-a\" }\n";
+  const oblique::solve::Run run = testing::run_of(
+      testing::Compiled(stays + kReciprocal, "[outputs]\ny = { signal = \"y\" }\n"), {.until = 40});
+  EXPECT_THAT(run.warnings, IsEmpty());
+  // 1000 times the tolerance, as the errors of the steps add up.
+  EXPECT_NEAR(1e18 * testing::row_values(run, "y").back() / std::exp(40), 1, 1e-5);
+}
+
+// Of a thousand fair signs the sum is within 6 √1000 = 190 of 0, and two trials agree in half of them.
+TEST(ErrorSigns, AreFairAndOthersInEachTrial) {
+  const auto signs_of = [](std::uint64_t trial) {
+    ErrorSigns signs(trial);
+    std::vector<double> all(1000);
+    for (double& sign : all) sign = signs.next();
+    return all;
+  };
+  for (std::uint64_t a = 0; a < ErrorSigns::kTrials; ++a) {
+    const std::vector<double> signs = signs_of(a);
+    EXPECT_EQ(signs, signs_of(a));
+    EXPECT_LE(std::abs(std::accumulate(signs.begin(), signs.end(), 0.0)), 190) << a;
+    for (std::uint64_t b = 0; b < a; ++b) {
+      const std::vector<double> others = signs_of(b);
+      EXPECT_LE(std::abs(std::inner_product(signs.begin(), signs.end(), others.begin(), 0.0)), 190);
+    }
+  }
 }
 
 // What is not shown, a zero that is subtracted to rounding, and a state that is large are no such outputs.
