@@ -49,6 +49,14 @@ TEST(WorstReason, IsAGroupNearADeadCentre) {
               StartsWith("the group lever is nearest to a dead centre there (normalised determinant "));
 }
 
+// That of the six-bar's dyad is the sine of the angle at C: at 180° cos = (140² + 150² − 280²)/(2·140·150) =
+// −0.864, sin = 0.50, whatever the triangle's angle at B.
+TEST(WorstReason, OfADyadByGradientIsItsDeterminant) {
+  const ComparedRun run = compared("six-bar", patch::PatchMethod::gradient);
+  EXPECT_EQ(run.worst.reason,
+            "the group BCF-CD is nearest to a dead centre there (normalised determinant 0.5)");
+}
+
 // The gains of the four-bar's loops go with |BD| over its longest, 3/5 at 0°; weight 10: L = 10 · 0.6.
 TEST(WorstReason, IsALoopOfTheLeastGain) {
   const ComparedRun run = compared("four-bar", patch::PatchMethod::triangles);

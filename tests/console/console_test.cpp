@@ -59,6 +59,18 @@ TEST(Console, ReadsWhatARunHas) {
   }
 }
 
+// y = −0.3 − 2 f(y/2), f = −y/4 below zero and −0.875 above: y = −0.6 and y = 1.45.
+TEST(Console, WarnsOfWhatNothingChoosesAtTheStart) {
+  const Console console = console_of(R"(
+y = { type = "summer", in = ["-0.3*one", "-2*f"] }
+one = { type = "constant" }
+f = { type = "function-generator", in = "0.5*y", points = [[-1, 0.5], [0, 0], [0, -0.875], [1, -0.875]] }
+)");
+  ASSERT_THAT(console.warnings(), SizeIs(1));
+  EXPECT_THAT(console.warnings()[0].what,
+              HasSubstr("' has several solutions: at t = 0 s the run begins with "));
+}
+
 // The same of every diagram that is shipped. The elements of an algebraic loop are sought from where they
 // were evaluated last, which rows do in a run: there it is the same to the rounding of that search.
 TEST(Console, ReadsWhatTheRunsOfTheShippedDiagramsHave) {
