@@ -212,6 +212,25 @@ x = { type = "integrator", in = ["xab"], initial = 1.5 }
   EXPECT_NE(done.count.first_warned->second.find("unstable"), std::string::npos);
 }
 
+// A signal that is no output of the diagram is called by its own name: y = e^t, of which no digit is known
+// where 1 − x = e^(−t) has come to the errors of x.
+TEST(Study, NamesASignalThatIsMeasuredInAWarning) {
+  const std::string text = R"toml(format = "oblique-diagram/1"
+[run]
+until = 28
+[blocks]
+one = { type = "constant" }
+x = { type = "integrator", in = ["one", "-x"] }
+d = { type = "summer", in = ["one", "-x"] }
+y = { type = "divider", numerator = "1e-12*one", denominator = "d", gain = inf, bandwidth = inf }
+)toml";
+  const Study study = study_of(plan_of({{"x.initial", "0", {}}}, {"end(y)"}), text);
+  const Study::Rows done = study.run(0, 1);
+  ASSERT_TRUE(done.count.first_warned);
+  EXPECT_NE(done.count.first_warned->second.find("no digit of the output 'y' is known"), std::string::npos)
+      << done.count.first_warned->second;
+}
+
 TEST(Study, EndsAtEveryOutputWhereNothingIsAsked) {
   const Study study = study_of(plan_of({{"x.initial", "1,2", {}}}, {}), kStudiedDecay);
   EXPECT_EQ(names_of(study), (std::vector<std::string>{"x.initial", "end(height)"}));

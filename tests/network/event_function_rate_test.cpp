@@ -2,6 +2,7 @@
 // What the search for events knows beforehand: rates of event functions, the structure of switches.
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "../support/compiled.h"
@@ -257,6 +258,28 @@ k = { type = "sign", in = "x" }
   EXPECT_TRUE(structure.depends(c, c));
   EXPECT_FALSE(structure.depends(k, c));
   EXPECT_FALSE(structure.depends(k, k));
+}
+
+// Sums of so many terms and one more have one switching surface where the last term is the same, as far as
+// they are looked through, and never where it is another.
+TEST(SwitchStructure, TellsLongSumsApart) {
+  const auto comparator = [](const std::string& name, int terms, const std::string& last) {
+    std::string in;
+    for (int k = 1; k <= terms; ++k) in += fmt::format("\"0.{:02}*x\", ", k);
+    return name + " = { type = \"comparator\", in = [" + in + "\"" + last + "\"] }\n";
+  };
+  const std::string states =
+      "x = { type = \"integrator\", in = \"y\", initial = 1 }\n"
+      "y = { type = \"integrator\", in = \"z\" }\n"
+      "z = { type = \"integrator\", in = \"-x\" }\n";
+  for (const int terms : {3, 30, 60}) {
+    const Compiled other(states + comparator("a", terms, "y") + comparator("b", terms, "z"));
+    const SwitchStructure& apart = other.program.switch_structure();
+    ASSERT_EQ(apart.unit.size(), 2U);
+    EXPECT_NE(apart.unit[0], apart.unit[1]) << terms;
+  }
+  const Compiled same(states + comparator("a", 3, "y") + comparator("b", 3, "y"));
+  EXPECT_EQ(same.program.switch_structure().unit[0], same.program.switch_structure().unit[1]);
 }
 
 }  // namespace
