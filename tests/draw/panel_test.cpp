@@ -2,6 +2,7 @@
 #include <oblique/draw/schematic/panel.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -186,6 +187,39 @@ TEST(PatchPanel, DrawsTheSymbolOfEveryKind) {
           << name;
     }
   }
+}
+
+// Twelve circuits so near to each other that some wires find no way: they are drawn straight and dashed, in
+// red, from the output to the input.
+TEST(PatchPanel, DrawsWiresThatFindNoWayStraight) {
+  std::string blocks = panel_head + "s = { type = \"sine-source\" }\n", layout = "[layout]\n";
+  const auto circuit = [](int k) { return "f" + std::to_string(k % 12); };
+  for (int k = 0; k < 12; ++k) {
+    blocks += circuit(k) + " = { type = \"four-bar-circuit\", px = \"" + circuit(k + 1) + ".x\", py = \"" +
+              circuit(k + 2) + ".y\", qx = \"" + circuit(k + 5) + ".sin_alpha\", qy = \"" + circuit(k + 7) +
+              ".cos_psi\", rocker = \"" + circuit(k + 9) + ".diagonal\" }\n";
+    layout +=
+        circuit(k) + " = [" + std::to_string(10.5 * (k % 4)) + ", " + std::to_string(13 * (k / 4)) + "]\n";
+  }
+  const diagram::Diagram diagram = sketched(blocks + layout);
+  const PatchPanel panel = draw_panel(diagram, panel_library());
+  EXPECT_FALSE(panel.lost.empty());
+  std::size_t straight = 0;
+  for (const Mark& mark : panel.picture.marks) {
+    const auto* const outline = std::get_if<Outline>(&mark.shape);
+    if (outline == nullptr || mark.pen.ink != Ink::vermilion || mark.pen.dashes.empty()) continue;
+    EXPECT_EQ(mark.pen.dashes, (std::vector<double>{4, 3}));
+    const Vector2d end = outline->segments.back().to;
+    EXPECT_TRUE(std::any_of(panel.blocks.begin(), panel.blocks.end(), [&](const PatchPanelBlock& one) {
+      return std::any_of(one.wires.begin(), one.wires.end(), [&](const PatchPanelWire& wire) {
+        // a wire ends at the box of the layout, before the body
+        return wire.at && std::abs(wire.at->y() - end.y()) < 1e-9 && end.x() <= wire.at->x() &&
+               end.x() > wire.at->x() - 40;
+      });
+    })) << end.transpose();
+    ++straight;
+  }
+  EXPECT_GE(straight, panel.lost.size());
 }
 
 }  // namespace
