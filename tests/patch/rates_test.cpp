@@ -171,5 +171,16 @@ TEST(RateCircuits, StandInTheFileWithTheirScale) {
   EXPECT_THAT(text, HasSubstr("\"C.vx\" = { signal = \"C_vx\", scale = 2, unit = \"m/s\" }"));
 }
 
+// A law that is zero for ten seconds: nothing moves by which a rate could be measured, and its unit is 1.
+TEST(RateCircuits, OfWhatStandsStillHaveTheUnitOne) {
+  std::string text = kFourBar;
+  text.replace(text.find("speed = 1"), 9, "speed = \"0*time rad/s\"");
+  PatchOptions options = with_rates();
+  options.bandwidth = 1000;
+  const diagram::Diagram diagram =
+      patch(mechanism::parse_mechanism(text + "[motion]\nuntil = 10\n", "still.toml"), options);
+  EXPECT_THAT(diagram.comment, HasSubstr("Rates: 1 machine unit = 1 m/s and 1 m/s^2."));
+}
+
 }  // namespace
 }  // namespace oblique::patch

@@ -14,6 +14,7 @@
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/diagram_writer.h>
 #include <oblique/network/program/program.h>
+#include <oblique/solve/integrator/hidden_motion.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/integrator/source_watch.h>
 
@@ -63,6 +64,42 @@ x = { type = "integrator", in = ["q"] }
   SourceWatch watch(made.program, workspace, SourceWatch::Shown::nothing, file);
   const std::vector<double> states = made.program.start();
   EXPECT_LE(watch.sample_times(0, 3, ConstantStates(states), false).size(), 16U);
+}
+
+/// x′ = 1 + decay·x of one state.
+struct Growing final : OdeSystem {
+  explicit Growing(double decay_) : decay(decay_) {
+    one.rows = {0};
+    one.column_starts = {0, 1};
+  }
+  std::size_t size() const override { return 1; }
+  const network::SparsePattern& pattern() const override { return one; }
+  bool derivatives(double, const double* x, double* dxdt) override {
+    *dxdt = 1 + decay * *x;
+    return true;
+  }
+  bool jacobian(double, const double*, double* values) override {
+    *values = decay;
+    return true;
+  }
+  network::SparsePattern one;
+  double decay;
+};
+
+// A solution that stands still where x′ = 1 errs by the length of a part of the step: it misses the equations
+// from a hundred absolute tolerances on, and what is pulled back at once errs by less.
+TEST(HiddenMotion, IsFoundFromAHundredTolerancesOn) {
+  const std::vector<double> rests{0};
+  const auto is_found = [&](double length, double decay) {
+    Growing system(decay);
+    HiddenMotion hidden(system, 1e-6, {1e-6});
+    const std::vector<double> times{length, 2 * length};
+    return hidden.find(0, times, ConstantStates(rests)).has_value();
+  };
+  EXPECT_FALSE(is_found(0.9e-4, 0));
+  EXPECT_TRUE(is_found(1.1e-4, 0));
+  EXPECT_TRUE(is_found(1.9e-4, 0));
+  EXPECT_FALSE(is_found(1.9e-4, -1e5));
 }
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {

@@ -50,6 +50,20 @@ TEST(Branch, EndsWithAJumpThatIsAnEvent) {
   }
 }
 
+// In a run of weeks the end of the branch is found as exactly, as a part of it.
+TEST(Branch, EndsWithAJumpInASlowRunToo) {
+  std::string slow = kRising;
+  slow.replace(slow.find("in = \"one\""), 10, "in = \"1e-6*one\"");
+  const auto result = run_of(Compiled(cubic(slow, kIdeal)), {.until = 2e6});
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_NEAR(result.events[0].time, 1e6 * (0.6 + kFold), 1e-3);  // found to 1e-10 of the run
+  const auto x = row_values(result, "x"), y = row_values(result, "y");
+  for (std::size_t r = 0; r < x.size(); ++r) {
+    EXPECT_NEAR(y[r] * y[r] * y[r] - y[r], x[r], 1e-12);
+    EXPECT_EQ(y[r] > 0, x[r] > kFold) << x[r];
+  }
+}
+
 // A relay that moves when its delay is over, whatever the coil did since, and two loops of amplifiers whose
 // branches end at nearly every turn: at one of them the search for the next event begins where the loop has
 // no value on its branch any more, and must look without it. (It read what the evaluation had left that had

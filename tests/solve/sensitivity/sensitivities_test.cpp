@@ -155,6 +155,18 @@ TEST(Sensitivities, JumpWhereTheRateDoes) {
   expect_column(run, "d(y)/d(one.value)", kTolerance, [](double t) { return t > 0.8 ? 0.8 : 0; });
 }
 
+// The same where it takes weeks: how exactly the event is located is a part of the run.
+TEST(Sensitivities, JumpWhereTheRateDoesInASlowRunToo) {
+  const Compiled made(
+      "one = { type = \"constant\", value = 1 }\np = { type = \"constant\", value = 0.8 }\n"
+      "x = { type = \"integrator\", in = \"1e-6*one\" }\n"
+      "k = { type = \"comparator\", in = [\"x\", \"-p\"], low = 1, high = 2 }\n"
+      "y = { type = \"integrator\", in = \"1e-6*k\" }\n");
+  const auto run = differentiated(made, {"p.value", "one.value"}, 2.01e6);
+  expect_column(run, "d(y)/d(p.value)", kTolerance, [](double t) { return t > 0.8e6 ? -1 : 0; });
+  expect_column(run, "d(y)/d(one.value)", kTolerance, [](double t) { return t > 0.8e6 ? 0.8 : 0; });
+}
+
 const char* const kSawtooth = R"toml([parameters]
 rate = { default = 0.5 }
 level = { default = 0.3 }
