@@ -222,6 +222,16 @@ C = [4, 0]
   EXPECT_THAT(refusal(guided(0)), HasSubstr("slide 'lower' in the loop"));
 }
 
+// Where a second drive of the same crank is what is too much, no joint is redundant.
+TEST(Redundancy, IsNotLookedForWhereADriveIsTooMuch) {
+  Mechanism driven_twice = parallelogram("60 deg", "[100, 35]");
+  Drive second = driven_twice.drives.front();
+  second.name = "second";
+  driven_twice.drives.push_back(second);
+  EXPECT_FALSE(examine_redundancy(driven_twice));
+  EXPECT_THAT(refusal(driven_twice), Not(HasSubstr("redundant")));
+}
+
 TEST(Redundancy, IsNotLookedForWhereNothingIsTooMuch) {
   EXPECT_FALSE(examine_redundancy(parallelogram("60 deg", "[100, 35]")));
   EXPECT_THAT(refusal(parallelogram("60 deg", "[100, 35]")), Not(HasSubstr("redundant")));

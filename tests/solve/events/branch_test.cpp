@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <oblique/solve/events/along_branch.h>
 
 #include "../../support/runs.h"
 
@@ -61,6 +64,29 @@ TEST(Branch, EndsWithAJumpInASlowRunToo) {
   for (std::size_t r = 0; r < x.size(); ++r) {
     EXPECT_NEAR(y[r] * y[r] * y[r] - y[r], x[r], 1e-12);
     EXPECT_EQ(y[r] > 0, x[r] > kFold) << x[r];
+  }
+}
+
+// What goes on from a time by 0.3 s at the most gets there in parts, and up to the end of the branch.
+TEST(AlongBranch, GoesAsFarAsTheBranchDoesInParts) {
+  const Compiled made(cubic(kRising, kIdeal));
+  network::Workspace workspace(made.program);
+  std::vector<double> signals(made.program.n_signals());
+  const double below = -0.6, beyond = 0.6;
+  ASSERT_TRUE(made.program.signals(0, &below, signals.data(), workspace));
+  workspace.follow_branches(true);
+  ASSERT_TRUE(made.program.signals(0, &below, signals.data(), workspace));
+  ASSERT_FALSE(made.program.signals(0, &beyond, signals.data(), workspace));
+  ASSERT_EQ(workspace.trouble().failure, network::LoopFailure::lost);
+  for (const double end : {2.0, 0.7}) {
+    double last = 0;
+    const double reached = evaluate_along_branch(0, 1, workspace, [&](double t) {
+      const bool known = t - last <= 0.3 && t <= end;
+      if (known) last = t;
+      return known;
+    });
+    EXPECT_NEAR(reached, std::min(1.0, end), 1e-7);  // as near as two hundred tries come
+    EXPECT_EQ(reached, last);
   }
 }
 
