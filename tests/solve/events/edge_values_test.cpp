@@ -99,6 +99,24 @@ x = { type = "integrator", in = "f" }
   for (const double from : {0.5, 3.0}) EXPECT_NEAR(edge_rate(made, from, -0.25), 2, 1e-13);
 }
 
+// z′ = sin t − sign(z)/2 slides along z = 0 until sin t = 1/2; z ln z is 0 there, and beyond that edge none.
+TEST(EdgeValues, AreShownWhileTheEdgeIsASlide) {
+  const diagram::BlockLibrary blocks = blocks_with("if(in > 0, in*log(in), 0)");
+  const solve::Run run = run_of(Compiled(R"toml(
+w = { type = "sine-source", frequency = "1 rad/s" }
+z = { type = "integrator", in = ["w", "-0.5*c"] }
+c = { type = "sign", in = "z" }
+f = { type = "own", in = "z" }
+)toml",
+                                         "", blocks),
+                                {.until = 0.5, .samples = 51});
+  EXPECT_THAT(run.warnings, IsEmpty());
+  const std::vector<double> t = row_values(run, "t"), c = row_values(run, "c");
+  for (std::size_t row = 1; row < t.size(); ++row)
+    ASSERT_NEAR(c[row], 2 * std::sin(t[row]), 1e-6) << "it does not slide";
+  for (const double value : row_values(run, "f")) EXPECT_NEAR(value, 0, 1e-7);  // z of 1e-9 makes 2e-8
+}
+
 // √x, written as 0/0 on the edge, is taken as far inside where another switch reads the same.
 TEST(EdgeValues, AreTakenOnceInsideOfAnEdgeThatSwitchesShare) {
   const diagram::BlockLibrary blocks = blocks_with("if(in > 0, in/sqrt(in), 0)");
