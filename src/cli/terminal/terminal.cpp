@@ -21,7 +21,11 @@
 namespace oblique::cli {
 namespace {
 
-std::vector<std::string> known_options;  // see `know_options`
+/// See `know_options`.
+std::vector<std::string>& known_options() {
+  static std::vector<std::string> names;
+  return names;
+}
 
 bool has_colours(int descriptor) {
   return isatty(descriptor) != 0 && std::getenv("NO_COLOR") == nullptr;
@@ -120,14 +124,15 @@ double quantity_option(const std::string& option, const std::string& text, std::
 }
 
 void know_options(std::vector<std::string> names) {
-  known_options = std::move(names);
+  known_options() = std::move(names);
 }
 
 const text::Vocabulary& command_line() {
   static const text::Vocabulary spelled{
       [](const text::Setting& setting) {
         const bool is_of_run = setting.name == "until" || setting.name == "tolerance";
-        if (is_of_run && std::count(known_options.begin(), known_options.end(), setting.name) == 0)
+        const std::vector<std::string>& known = known_options();
+        if (is_of_run && std::count(known.begin(), known.end(), setting.name) == 0)
           return fmt::format("'{}' of [run]", setting.name);
         if (setting.value.empty()) return "--" + setting.name;
         const bool is_one_word = setting.value.find(' ') == std::string::npos;
