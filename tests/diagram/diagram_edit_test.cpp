@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/edit/diagram_edit.h>
 
+#include <filesystem>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -229,6 +230,76 @@ phases = [{ mode = "operate", until = "e2 > 2" }]
                                                                                  {"\"e2 max", "\"d max"}})
     renamed = by_hand(from, to, renamed);
   EXPECT_EQ(edited([](DiagramEdit& edit) { edit.rename("e2", "d"); }, timed), renamed);
+}
+
+// What is set for a published value or a step of a lesson names a block, and so does an answer; where a
+// diagram lists no outputs, what is expected of its signals does too.
+TEST(DiagramEdit, RenamesInWhatWasPublishedAndInLessons) {
+  const std::string published = empty_diagram + R"toml(x = { type = "integrator", in = ["-2*x"], initial = 1 }
+
+[published]
+plot = ["x"]
+
+[[published.value]]
+name = "x"
+at = "minimum"
+set = { "x.in[1]" = 3, "y.in[1]" = 3 }
+
+[[lesson.step]]
+do = "turn x up"
+set = { "x.initial" = 2 }
+expect = { "x maximum" = 2 }
+
+[lesson.question]
+ask = "and x?"
+answer = "x.initial"
+expect = { "x at 0" = 3 }
+)toml";
+  std::string renamed = published;
+  for (const auto& [from, to] :
+       std::vector<std::pair<const char*, const char*>>{{"x = {", "speed = {"},
+                                                        {"-2*x", "-2*speed"},
+                                                        {"[\"x\"]", "[\"speed\"]"},
+                                                        {"name = \"x\"", "name = \"speed\""},
+                                                        {"{ \"x.in[1]\"", "{ \"speed.in[1]\""},
+                                                        {"\"x.initial\" = 2", "\"speed.initial\" = 2"},
+                                                        {"\"x maximum\"", "\"speed maximum\""},
+                                                        {"= \"x.initial\"", "= \"speed.initial\""},
+                                                        {"\"x at 0\"", "\"speed at 0\""}})
+    renamed = by_hand(from, to, renamed);
+  EXPECT_EQ(edited([](DiagramEdit& edit) { edit.rename("x", "speed"); }, published), renamed);
+  // With outputs, what is plotted and expected is theirs.
+  const std::string outputs = "\n[outputs]\nx = \"x\"\n";
+  std::string settings = published + outputs;
+  for (const auto& [from, to] :
+       std::vector<std::pair<const char*, const char*>>{{"x = {", "speed = {"},
+                                                        {"-2*x", "-2*speed"},
+                                                        {"{ \"x.in[1]\"", "{ \"speed.in[1]\""},
+                                                        {"\"x.initial\" = 2", "\"speed.initial\" = 2"},
+                                                        {"= \"x.initial\"", "= \"speed.initial\""},
+                                                        {"x = \"x\"", "x = \"speed\""}})
+    settings = by_hand(from, to, settings);
+  EXPECT_EQ(edited([](DiagramEdit& edit) { edit.rename("x", "speed"); }, published + outputs), settings);
+}
+
+// Whatever a shipped diagram names its blocks by, it can be read when each has another name.
+TEST(DiagramEdit, RenamesTheBlocksOfEveryShippedDiagram) {
+  int renamed = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(OBLIQUE_SOURCE_DIR "/diagrams")) {
+    if (entry.path().extension() != ".toml") continue;
+    const std::string text = text::read_file(entry.path());
+    if (text.find("\"oblique-diagram/1\"") == std::string::npos) continue;
+    if (entry.path().parent_path().filename() == "own-blocks") continue;  // whose blocks are not shipped
+    SCOPED_TRACE(entry.path().string());
+    DiagramEdit edit(text, entry.path().string(), library());
+    const Diagram before = parse_diagram(text, entry.path().string());
+    for (const BlockInstance& block : before.blocks) edit.rename(block.name, "renamed_" + block.name);
+    const Diagram after = parse_diagram(edit.text(), entry.path().string());
+    flatten(after, library());
+    EXPECT_EQ(after.expectations.size(), before.expectations.size());
+    ++renamed;
+  }
+  EXPECT_GT(renamed, 100);
 }
 
 TEST(DiagramEdit, RemovesABlockWithAllThatHangsOnIt) {

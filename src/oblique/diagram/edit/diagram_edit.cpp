@@ -154,28 +154,49 @@ void DiagramEdit::rename(const std::string& block, const std::string& name) {
       }
     }
   }
-  const auto rename_key = [&](const Value* table, const TomlPath& path, const std::string& key,
+  const auto rename_key = [&](const Value* table, TomlPath path, const std::string& key,
                               const std::string& to) {
     if (table == nullptr || table->find(key) == nullptr) return;
-    TomlPath entry = path;
-    entry.emplace_back(key);
-    changes.push_back({TomlChange::Kind::rename, std::move(entry), to});
+    path.emplace_back(key);
+    changes.push_back({TomlChange::Kind::rename, std::move(path), to});
+  };
+  // "x.in[2]" of settings, "x at 4" of expectations
+  const auto rename_keys = [&](const Value* table, const TomlPath& path) {
+    if (table == nullptr) return;
+    for (const text::Entry& entry : table->entries) {
+      if (entry.key.substr(0, entry.key.find_first_of(" .")) == block)
+        rename_key(table, path, entry.key, name + entry.key.substr(block.size()));
+    }
   };
   rename_key(content.find_table("layout"), {"layout"}, block, name);
-  if (const Value* const run = content.find_table("run")) {
-    if (const Value* const tolerances = run->find("tolerances")) {
-      for (const text::Entry& entry : tolerances->entries) {
-        if (block_of(entry.key) == block)
-          rename_key(tolerances, {"run", "tolerances"}, entry.key, with_other_name(entry.key, block, name));
-      }
+  if (const Value* const run = content.find_table("run"))
+    rename_keys(run->find("tolerances"), {"run", "tolerances"});
+  text::Diagnostics ignored;
+  const bool shows_signals = parse_diagram(text_, file_, ignored).outputs.empty();
+  if (shows_signals) rename_keys(content.find_table("expect"), {"expect"});
+  for (const auto& [table, list] : {std::pair("published", "value"), {"lesson", "step"}}) {
+    const Value* const found = content.find_table(table);
+    const Value* const elements = found == nullptr ? nullptr : found->find(list);
+    if (elements == nullptr) continue;
+    for (std::size_t k = 0; k < elements->elements.size(); ++k) {
+      const Value& element = elements->elements[k];
+      rename_keys(element.find("set"), {table, list, k, "set"});
+      if (!shows_signals) continue;
+      rename_keys(element.find("expect"), {table, list, k, "expect"});
+      if (const Value* const shown = element.find("name"))
+        rename_in(*shown, {table, list, k, "name"}, block, name, changes);
     }
   }
-  text::Diagnostics ignored;
-  const Diagram diagram = parse_diagram(text_, file_, ignored);
-  for (const Expectation& expectation : diagram.expectations) {
-    if (diagram.outputs.empty() && block_of(expectation.output) == block)
-      rename_key(content.find_table("expect"), {"expect"}, expectation.text,
-                 name + expectation.text.substr(block.size()));
+  if (const Value* const published = content.find_table("published"); published != nullptr && shows_signals) {
+    if (const Value* const plot = published->find("plot"))
+      rename_in(*plot, {"published", "plot"}, block, name, changes);
+  }
+  if (const Value* const lesson = content.find_table("lesson")) {
+    if (const Value* const question = lesson->find("question")) {
+      if (const Value* const answer = question->find("answer"))
+        rename_in(*answer, {"lesson", "question", "answer"}, block, name, changes);
+      if (shows_signals) rename_keys(question->find("expect"), {"lesson", "question", "expect"});
+    }
   }
   rename_key(content.find_table("blocks"), {"blocks"}, block, name);
   text_ = text::edit_toml(text_, file_, changes);
