@@ -143,9 +143,9 @@ TEST_F(PatchForMachine, WritesNothingWhereTheMachineLacksAKindOfElement) {
   EXPECT_THAT(text_of("made.toml"), HasSubstr("type = \"multiplier\""));
 }
 
-// An arm that swings, its angle 30° + sin(t)/2: a TR-10 has no element for the law of its drive, but a clock
-// and a function generator, as for any diagram. Ten straight lines of the law, within 0.019 of it, and the
-// multipliers, to 0.8 %, leave the arm's end within 1 % of its length.
+// An arm that swings, its angle 30° + sin(t)/2: a TR-10 has no element for the law of its drive, but two
+// integrators that draw it, as for any diagram. Its multipliers, to 0.8 %, leave the arm's end within 1 % of
+// its length.
 TEST_F(PatchForMachine, PutsAMechanismWithALawOntoTheMachineAsADiagram) {
   write("arm.toml", R"(format = "oblique-mechanism/1"
 [units]
@@ -163,7 +163,7 @@ until = "2*pi"
   EXPECT_EQ(made.status, 0) << made.err;
   EXPECT_THAT(made.err,
               HasSubstr("it fits\nput onto the machine as a diagram is, since it has no time-function\n"));
-  EXPECT_THAT(text_of("made-functions.csv"), HasSubstr("d_speed"));
+  EXPECT_THAT(text_of("made.toml"), HasSubstr("d_speed_source_sine "));
   write("made.toml", text_of("made.toml") + R"toml([expect]
 "P.x at pi/2" = { value = "50*cos(pi/6 + 0.5)", within = 0.5 }
 "P.y at pi/2" = { value = "50*sin(pi/6 + 0.5)", within = 0.5 }

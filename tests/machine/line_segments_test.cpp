@@ -10,7 +10,7 @@ namespace oblique::machine {
 namespace {
 
 /// The value of the lines at x, by a way of its own.
-double at(const text::PointTable& points, double x) {
+double value_at(const text::PointTable& points, double x) {
   std::size_t k = 1;
   while (k + 1 < points.x.size() && points.x[k] < x) ++k;
   const double part = (x - points.x[k - 1]) / (points.x[k] - points.x[k - 1]);
@@ -22,7 +22,7 @@ double distance(const LineSegments& lines, double (*function)(double), double fr
   double most = 0;
   for (int k = 0; k <= 10'000; ++k) {
     const double x = from + (to - from) * k / 10'000;
-    most = std::max(most, std::abs(at(lines.points, x) - function(x)));
+    most = std::max(most, std::abs(value_at(lines.points, x) - function(x)));
   }
   return most;
 }
@@ -62,6 +62,21 @@ TEST(LineSegments, FindWhatConsistsOfStraightLinesAsItIs) {
 TEST(LineSegments, KnowNoLinesForAJumpOrAPole) {
   EXPECT_TRUE(std::isinf(line_segments([](double x) { return x < 0.3 ? 0.0 : 1.0; }, 0, 1, 10).error));
   EXPECT_TRUE(std::isinf(line_segments([](double x) { return std::log(x); }, 0, 1, 10).error));
+}
+
+// A peak of 1e-6 of the range stands between the points of the grid, or on one alone: it is found, or missed
+// by as much as it is high, and the lines go to the end in any case.
+TEST(LineSegments, DoNotOverlookANarrowPeak) {
+  for (const double at : {0.5, 0.62345, 0.1 + 1e-4}) {
+    SCOPED_TRACE(at);
+    const auto peak = [at](double x) { return std::exp(-(x - at) * (x - at) * 1e12); };
+    for (const int n : {1, 3, 10}) {
+      const LineSegments lines = line_segments(peak, 0, 1, n);
+      EXPECT_LE(lines.points.x.size(), static_cast<std::size_t>(n) + 1);
+      EXPECT_EQ(lines.points.x.back(), 1);
+      EXPECT_LE(std::abs(value_at(lines.points, 0.5) - peak(0.5)), lines.error + 1e-12);
+    }
+  }
 }
 
 // exp(−7/x) is 5e-4 to 0.5: lines that err by as much everywhere would begin below zero. None of these does,

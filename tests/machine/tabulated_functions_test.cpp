@@ -94,7 +94,7 @@ TEST(TabulatedFunctions, RefusesAFunctionThatItsLinesMiss) {
 
 TEST(TabulatedFunctions, RefusesAFunctionThatHasNoLines) {
   EXPECT_THAT(
-      refusal("a = { type = \"time-function\", formula = \"step(time - 0.4)\" }\n"),
+      refusal("a = { type = \"time-function\", formula = \"atan2(sin(9*time), cos(9*time))\" }\n"),
       HasSubstr("test.toml:5:1: 'a' (time-function) jumps, or is not finite, where its argument runs from 0 "
                 "to 1; expected a continuous function, which a function generator can be set for"));
 }

@@ -39,10 +39,8 @@ class Fitter {
   LineSegments make() {
     for (const Point& point : grid_) {
       if (!std::isfinite(point.y)) return {{}, kInfinity};
-      low_ = std::min(low_, point.y);
-      high_ = std::max(high_, point.y);
     }
-    span_ = high_ - low_;
+    look_at_span();
     if (span_ == 0) return finish({grid_.front(), grid_.back()});
     if (jumps()) return {{}, kInfinity};
     std::vector<Point> corners = split_at_corners();
@@ -53,6 +51,7 @@ class Fitter {
     std::sort(grid_.begin(), grid_.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
     const auto same = [](const Point& a, const Point& b) { return a.x == b.x; };
     grid_.erase(std::unique(grid_.begin(), grid_.end(), same), grid_.end());
+    look_at_span();  // which a peak between the points of the grid had no part in
     const std::vector<Point> even = even_lines();
     LineSegments on_curve = finish(even), balanced = finish(balance(even));
     LineSegments& better = balanced.error < on_curve.error ? balanced : on_curve;
@@ -62,7 +61,15 @@ class Fitter {
  private:
   Point at(double x) const { return {x, function_(x)}; }
 
-  /// The point between two where the function is farthest from their line.
+  void look_at_span() {
+    for (const Point& point : grid_) {
+      low_ = std::min(low_, point.y);
+      high_ = std::max(high_, point.y);
+    }
+    span_ = high_ - low_;
+  }
+
+  /// The point between two where the function is farthest from their line, as far as it is known.
   Point farthest(const Point& a, const Point& b) const {
     constexpr int kTrials = 32;
     const auto distance = [&](const Point& point) { return std::abs(above(a, b, point)); };
@@ -86,7 +93,9 @@ class Fitter {
         right = other;
       }
     }
-    return at((left + right) / 2);
+    // Beside a peak that is narrower than the trials the search finds less than they did.
+    const Point found = at((left + right) / 2), tried = at(a.x + (b.x - a.x) * best / kTrials);
+    return distance(found) < most ? tried : found;
   }
 
   /// Splits the line that errs most at the point where it does, until there are enough of them or none errs.
@@ -195,6 +204,11 @@ class Fitter {
     for (std::size_t k = 1; k < points.size(); ++k)
       lines.error = std::max(lines.error,
                              std::abs(above(points[k - 1], points[k], farthest(points[k - 1], points[k]))));
+    std::size_t line = 1;
+    for (const Point& point : grid_) {
+      while (line + 1 < points.size() && points[line].x < point.x) ++line;
+      lines.error = std::max(lines.error, std::abs(above(points[line - 1], points[line], point)));
+    }
     return lines;
   }
 

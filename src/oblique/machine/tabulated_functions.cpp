@@ -4,17 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <oblique/diagram/names.h>
+#include <oblique/machine/function_reader.h>
 #include <oblique/machine/line_segments.h>
 #include <oblique/machine/logic_ports.h>
 #include <oblique/machine/mode_control.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/role.h>
+#include <oblique/machine/time_circuit.h>
 
 namespace oblique::machine {
 namespace {
@@ -22,89 +25,6 @@ namespace {
 /// Of the span of a function: by less than this a straight line is what it says.
 constexpr double kStraight = 1e-12;
 constexpr double kMostError = 0.05;  ///< of the span: lines that miss by more do not stand for the function
-
-/// Finds what a block computes from its one argument, be it by a formula or by points.
-class FunctionReader {
- public:
-  explicit FunctionReader(diagram::FlatBlock block)
-      : block_(std::move(block)), definition_(*block_.definition), equations_(block_.behaviour->equations) {
-    for (diagram::Equation& equation : equations_) write_out_tables(equation.expression);
-  }
-
-  /// Whether its outputs depend on one input or on time alone, and on nothing that was before.
-  bool is_function() {
-    const auto assigns = [](const diagram::Equation& equation) {
-      return equation.kind == diagram::Equation::Kind::assignment;
-    };
-    if (!definition_.memories.empty() || !std::all_of(equations_.begin(), equations_.end(), assigns))
-      return false;
-    bool time = false;
-    for (const diagram::Equation& equation : equations_) {
-      for (const text::Expression* const name : diagram::names_in(equation.expression)) {
-        if (name->name == "time") time = true;
-      }
-    }
-    for (std::size_t i = 0; i < block_.inputs.size(); ++i) {
-      if (block_.inputs[i].terms.empty()) continue;
-      if (time || input_) return false;
-      input_ = i;
-    }
-    if (!time && !input_) return false;
-    try {  // a mode of operation: no function that is known here
-      for (std::size_t k = 0; k < definition_.outputs.size(); ++k) value(k, 0.5);
-    } catch (const text::ExpressionError&) {
-      return false;
-    }
-    return true;
-  }
-
-  /// The input that is the argument; nothing: it is time.
-  std::optional<std::size_t> input() const { return input_; }
-
-  double value(std::size_t output, double argument) const {
-    return value_of(definition_.outputs[output].name, argument);
-  }
-
- private:
-  /// Puts the points in the place of a parameter that is a function: table(x, data) is table(x, x1, y1, …).
-  void write_out_tables(text::Expression& expression) const {
-    for (text::Expression& operand : expression.operands) write_out_tables(operand);
-    const bool is_named = expression.kind == text::Expression::Kind::call &&
-                          expression.function == text::Function::table && expression.operands.size() == 2;
-    if (!is_named) return;
-    const auto parameter = definition_.find_parameter(expression.operands[1].name);
-    if (!parameter) return;
-    const text::PointTable& points = block_.points[*parameter];
-    expression.operands.pop_back();
-    for (std::size_t k = 0; k < points.x.size(); ++k) {
-      for (const double coordinate : {points.x[k], points.y[k]}) {
-        text::Expression number;
-        number.number = coordinate;
-        expression.operands.push_back(std::move(number));
-      }
-    }
-  }
-
-  double value_of(std::string_view target, double argument) const {
-    const auto equation = std::find_if(equations_.begin(), equations_.end(),
-                                       [&](const diagram::Equation& e) { return e.target == target; });
-    return text::evaluate(equation->expression, [&](std::string_view name) -> std::optional<double> {
-      if (name == "time") return argument;
-      if (name == "polarity") return block_.polarity;
-      if (const auto p = definition_.find_parameter(name)) return block_.parameters[*p];
-      if (const auto i = definition_.find_input(name))
-        return i == input_ ? argument : block_.inputs[*i].constant;
-      const bool known = std::any_of(equations_.begin(), equations_.end(),
-                                     [&](const diagram::Equation& e) { return e.target == name; });
-      return known ? std::optional(value_of(name, argument)) : std::nullopt;
-    });
-  }
-
-  diagram::FlatBlock block_;
-  const diagram::BlockDefinition& definition_;
-  std::vector<diagram::Equation> equations_;
-  std::optional<std::size_t> input_;
-};
 
 class Tabulator {
  public:
@@ -169,15 +89,22 @@ class Tabulator {
 
   void replace(std::size_t b, const FunctionReader& function) {
     const diagram::FlatBlock block = flat_.blocks[b];  // whose place others take
-    const diagram::FlatInput argument = function.input() ? block.inputs[*function.input()] : time();
-    SignalRange range{0, until_};
-    if (function.input()) range = range_of(argument);
+    diagram::FlatInput argument;
+    if (function.input()) argument = block.inputs[*function.input()];
+    if (function.is_of_time()) argument = time();
+    const SignalRange range = function.is_of_time() ? SignalRange{0, until_} : range_of(argument);
     const auto& outputs = block.definition->outputs;
     std::vector<diagram::FlatBlock> made;
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       const std::string path = outputs.size() == 1 ? block.path : block.path + "." + outputs[k].name;
-      const auto value = [&](double x) { return needed_[first_[b] + k] ? function_at(function, k, x) : 0; };
-      made.push_back(element_for(value, block, path, argument, range));
+      const std::size_t signal = first_[b] + k;
+      Function wanted;
+      if (needed_[signal]) {
+        wanted.value = [&function, k](double x) { return function.value(k, x); };
+        wanted.seen = ranges_[signal];
+        if (function.is_of_time()) wanted.of_time = function.formula(k);
+      }
+      made.push_back(element_for(wanted, block, path, argument, range));
     }
     flat_.blocks[b] = std::move(made.front());
     for (std::size_t k = 1; k < made.size(); ++k) {
@@ -186,24 +113,35 @@ class Tabulator {
     }
   }
 
-  static double function_at(const FunctionReader& function, std::size_t output, double x) {
-    try {
-      return function.value(output, x);
-    } catch (const text::ExpressionError&) {
-      return std::nan("");
-    }
-  }
+  /// What is to be made of elements.
+  struct Function {
+    std::function<double(double)> value = [](double) { return 0; };
+    std::optional<text::Expression> of_time;  ///< where the time is the argument
+    std::optional<SignalRange> seen;  ///< what it was over the run, where it is a signal of the diagram
+  };
 
-  diagram::FlatBlock element_for(const std::function<double(double)>& value, const diagram::FlatBlock& block,
+  diagram::FlatBlock element_for(const Function& function, const diagram::FlatBlock& block,
                                  const std::string& path, const diagram::FlatInput& argument,
                                  const SignalRange& range) {
+    const auto value = [&](double x) {
+      try {
+        return function.value(x);
+      } catch (const text::ExpressionError&) {
+        return std::nan("");
+      }
+    };
     const double middle = (range.low + range.high) / 2;
-    const LineSegments one = range.high > range.low ? line_segments(value, range.low, range.high, 1)
+    const LineSegments one = range.high > range.low ? lines_for(function, value, range, 1)
                                                     : LineSegments{{{middle}, {value(middle)}}, 0};
     double size = 0;
     for (const double y : one.points.y) size = std::max(size, std::abs(y));
     if (one.error <= kStraight * size) return summer(one.points, block, path, argument);
-    const LineSegments lines = line_segments(value, range.low, range.high, segments_);
+    const LineSegments lines = lines_for(function, value, range, segments_);
+    const bool is_exact = lines.error <= kStraight * (lines.high - lines.low);
+    if (function.of_time && !is_exact) {
+      const auto circuit = time_circuit(*function.of_time, until_);
+      if (circuit && has_lines(*circuit)) return drawn(*circuit, block, path);
+    }
     if (!std::isfinite(lines.error)) {
       diagnostics_.add(
           {block.place,
@@ -226,8 +164,7 @@ class Tabulator {
       return block;
     }
     constexpr std::size_t kMostCorners = 4;
-    const bool has_few_corners =
-        lines.error <= kStraight * (high - low) && lines.points.x.size() <= kMostCorners + 2;
+    const bool has_few_corners = is_exact && lines.points.x.size() <= kMostCorners + 2;
     if (switches_corners_ && has_few_corners) return corners(lines.points, block, path, argument);
     functions_.push_back({path, block.definition->name, static_cast<int>(lines.points.x.size()) - 1,
                           range.low, range.high, lines.error});
@@ -239,6 +176,138 @@ class Tabulator {
     }
     generator.inputs = {argument};
     return generator;
+  }
+
+  /// The lines, which miss by as much as the signal was beyond them in the run: what is narrower than the
+  /// points that they are found by.
+  static LineSegments lines_for(const Function& function, const std::function<double(double)>& value,
+                                const SignalRange& range, int segments) {
+    LineSegments lines = line_segments(value, range.low, range.high, segments);
+    if (!function.seen || !std::isfinite(lines.error)) return lines;
+    const auto [least, most] = std::minmax_element(lines.points.y.begin(), lines.points.y.end());
+    const double beyond = std::max(*least - function.seen->low, function.seen->high - *most);
+    lines.low = std::min(lines.low, function.seen->low);
+    lines.high = std::max(lines.high, function.seen->high);
+    constexpr double kRounding = 1e-6;  // between the points, and the solver's
+    if (beyond > kRounding * (lines.high - lines.low)) lines.error = std::max(lines.error, beyond);
+    return lines;
+  }
+
+  /// Whether straight lines stand for the functions in a circuit.
+  bool has_lines(const TimeCircuit& circuit) const {
+    return std::all_of(circuit.signals.begin(), circuit.signals.end(), [&](const TimeSignal& signal) {
+      if (signal.kind != TimeSignal::Kind::function) return true;
+      const LineSegments lines =
+          line_segments(value_of(signal), signal.range.low, signal.range.high, segments_);
+      return lines.error <= kMostError * (lines.high - lines.low);
+    });
+  }
+
+  static std::function<double(double)> value_of(const TimeSignal& function) {
+    return [&function](double x) {
+      return text::evaluate(function.function, [x](std::string_view) { return x; });
+    };
+  }
+
+  /// The sum of a circuit's signals, which are appended.
+  diagram::FlatBlock drawn(const TimeCircuit& circuit, const diagram::FlatBlock& block,
+                           const std::string& path) {
+    const std::vector<TimeSum::Term>& terms = circuit.out.terms;
+    std::vector<diagram::FlatInput> signals;
+    signals.reserve(circuit.signals.size());
+    for (const TimeSignal& signal : circuit.signals) {
+      // What is the whole formula but for a factor has its size at once.
+      const bool is_all =
+          terms.size() == 1 && terms.front().signal == signals.size() && circuit.out.constant == 0;
+      signals.push_back(drawn(signal, is_all ? std::abs(terms.front().weight) : 1, signals, block, path));
+    }
+    diagram::FlatBlock sum = element_for(block, Role::summer, path);
+    sum.inputs = {sum_of(circuit.out, signals)};
+    return sum;
+  }
+
+  static diagram::FlatInput sum_of(const TimeSum& sum, const std::vector<diagram::FlatInput>& signals) {
+    diagram::FlatInput input{{}, sum.constant};
+    for (const TimeSum::Term& term : sum.terms) {
+      const diagram::FlatInput& signal = signals[term.signal];
+      input.constant += term.weight * signal.constant;
+      for (const diagram::FlatTerm& part : signal.terms)
+        input.terms.push_back({term.weight * part.weight, part.signal});
+    }
+    return input;
+  }
+
+  /// A signal of a circuit as a sum of appended elements; `size` is the greatest value that these are to
+  /// have.
+  diagram::FlatInput drawn(const TimeSignal& signal, double size,
+                           const std::vector<diagram::FlatInput>& signals, const diagram::FlatBlock& block,
+                           const std::string& path) {
+    const std::string name = fmt::format("{}.part_{}", path, signals.size());
+    switch (signal.kind) {
+      case TimeSignal::Kind::clock:
+        return time();
+      case TimeSignal::Kind::sine:
+        return sine(signal, size, block, path);
+      case TimeSignal::Kind::exponential: {
+        diagram::FlatBlock integrator = element_for(block, Role::integrator, name);
+        set_initial(integrator, size * std::exp(signal.phase));
+        feed(integrator, {{{signal.rate, {flat_.blocks.size(), 0}}}, 0});
+        return {{{1 / size, append(std::move(integrator))}}, 0};
+      }
+      case TimeSignal::Kind::product: {
+        diagram::FlatBlock product = element_for(block, Role::multiplier, name);
+        product.inputs = {sum_of(signal.a, signals), sum_of(signal.b, signals)};
+        return {{{1, append(std::move(product))}}, 0};
+      }
+      case TimeSignal::Kind::comparison: {
+        diagram::FlatBlock comparator = element_for(block, Role::comparator, name);
+        feed(comparator, sum_of(signal.a, signals));
+        return {{{1, append(std::move(comparator))}}, 0};
+      }
+      case TimeSignal::Kind::function: {
+        const Function function{value_of(signal), {}, {}};
+        diagram::FlatBlock made = element_for(function, block, name, sum_of(signal.a, signals), signal.range);
+        return {{{1, append(std::move(made))}}, 0};
+      }
+    }
+    return {};
+  }
+
+  /// sin(rate·t + phase) of a ring of two integrators, one for all of a rate.
+  diagram::FlatInput sine(const TimeSignal& wanted, double size, const diagram::FlatBlock& block,
+                          const std::string& path) {
+    const auto [found, is_new] = rings_.try_emplace(wanted.rate);
+    Ring& ring = found->second;
+    if (is_new) {
+      ring = {size, wanted.phase, {flat_.blocks.size(), 0}, {flat_.blocks.size() + 1, 0}};
+      diagram::FlatBlock sine = element_for(block, Role::integrator, path + ".source_sine");
+      diagram::FlatBlock cosine = element_for(block, Role::integrator, path + ".source_cosine");
+      set_initial(sine, size * std::sin(wanted.phase));
+      set_initial(cosine, size * std::cos(wanted.phase));
+      feed(sine, {{{wanted.rate, ring.cosine}}, 0});
+      feed(cosine, {{{-wanted.rate, ring.sine}}, 0});
+      append(std::move(sine));
+      append(std::move(cosine));
+    }
+    const double ahead = wanted.phase - ring.phase;
+    diagram::FlatInput sum;
+    for (const auto& [weight, signal] :
+         {std::pair(std::cos(ahead), ring.sine), {std::sin(ahead), ring.cosine}}) {
+      if (std::abs(weight) > kStraight) sum.terms.push_back({weight / ring.size, signal});
+    }
+    return sum;
+  }
+
+  static void set_initial(diagram::FlatBlock& integrator, double value) {
+    integrator.parameters[integrator.definition->find_parameter("initial").value()] =
+        std::abs(value) > kStraight ? value : 0;
+  }
+
+  /// Connects the summing input.
+  static void feed(diagram::FlatBlock& block, const diagram::FlatInput& input) {
+    for (std::size_t i = 0; i < block.inputs.size(); ++i) {
+      if (block.definition->inputs[i].sum) block.inputs[i] = input;
+    }
   }
 
   /// y = slope · argument + what is left.
@@ -282,9 +351,7 @@ class Tabulator {
       for (diagram::FlatTerm& term : compared.terms) term.weight *= side;
       compared.constant *= side;
       diagram::FlatBlock above = element_for(block, Role::comparator, fmt::format("{}.above_{}", path, k));
-      for (std::size_t i = 0; i < above.inputs.size(); ++i) {
-        if (above.definition->inputs[i].sum) above.inputs[i] = compared;
-      }
+      feed(above, compared);
       diagram::FlatBlock passed = element_for(block, Role::multiplier, fmt::format("{}.beyond_{}", path, k));
       passed.inputs = {beyond, {{{1, append(std::move(above))}}, 0}};
       sum.inputs.front().terms.push_back({side * (slopes[k] - slopes[k - 1]), append(std::move(passed))});
@@ -314,9 +381,7 @@ class Tabulator {
       std::string name = "clock";
       while (taken(name)) name += "_";
       diagram::FlatBlock clock = element_for(flat_.blocks.front(), Role::integrator, name);
-      for (std::size_t i = 0; i < clock.inputs.size(); ++i) {
-        if (clock.definition->inputs[i].sum) clock.inputs[i].constant = 1;
-      }
+      feed(clock, {{}, 1});
       clock_ = flat_.blocks.size();
       flat_.blocks.push_back(std::move(clock));
     }
@@ -353,6 +418,12 @@ class Tabulator {
     }
   }
 
+  /// Two integrators that draw size·sin(rate·t + phase) and its cosine.
+  struct Ring {
+    double size = 1, phase = 0;
+    diagram::SignalRef sine, cosine;
+  };
+
   diagram::FlatDiagram& flat_;
   const diagram::BlockLibrary& library_;
   bool switches_corners_;
@@ -363,6 +434,7 @@ class Tabulator {
   std::size_t signals_ = 0;
   std::vector<bool> needed_;  ///< each signal, by an output or for the modes
   std::optional<std::size_t> clock_;
+  std::map<double, Ring> rings_;  ///< of each rate
   std::vector<TabulatedFunction> functions_;
   text::Diagnostics diagnostics_;
 };
