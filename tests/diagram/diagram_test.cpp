@@ -270,8 +270,8 @@ TEST(ParseDiagram, ChecksPlacesOfBlocks) {
 
 TEST(ParseDiagram, ChecksExpectations) {
   EXPECT_EQ(expect_message("a = { value = 1, within = 1 }"),
-            "d.toml:7:1: [expect] cannot read 'a'; expected \"OUTPUT at TIME\", \"OUTPUT maximum\" or "
-            "\"OUTPUT minimum\"");
+            "d.toml:7:1: [expect] cannot read 'a'; expected \"OUTPUT at TIME\", \"OUTPUT maximum\", "
+            "\"OUTPUT minimum\" or \"OUTPUT period\"");
   EXPECT_THAT(expect_message("\" maximum\" = { value = 1, within = 1 }"),
               HasSubstr("[expect] cannot read ' maximum'"));
   EXPECT_EQ(expect_message("\"a at 3\" = { value = 1, within = 1 }"),

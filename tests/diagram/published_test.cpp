@@ -109,6 +109,17 @@ TEST(Published, ReadsValuesInTheirOwnUnit) {
   EXPECT_EQ(value.factor, 10);  // millimetres in a centimetre
 }
 
+TEST(Published, GivesPeriodsInUnitsOfTime) {
+  const std::string value = "[[published.value]]\nname = \"x\"\nat = \"period\"\nvalue = 1.5\nwithin = 0.1\n";
+  const Diagram d = published_with(value + "unit = \"ms\"\n");
+  EXPECT_EQ(d.published->values.at(0).expected.kind, Expectation::Kind::period);
+  EXPECT_EQ(d.published->values.at(0).factor, 1e-3);
+  EXPECT_EQ(name_of(d.published->values.at(0)), "x period");
+  EXPECT_EQ(published_with(value).published->values.at(0).unit, "s");
+  EXPECT_THAT(published_message(value + "unit = \"mm\"\n"),
+              ::testing::HasSubstr("'unit' of [[published.value]] is 'mm'; expected a unit of time"));
+}
+
 // Nothing is said of the time: what the run ends with.
 TEST(Published, MeansTheEndOfTheRun) {
   const Diagram d = published_with("[[published.value]]\nname = \"x\"\nvalue = 1\nwithin = 0.1\n");

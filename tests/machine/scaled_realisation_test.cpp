@@ -294,6 +294,7 @@ x = { type = "integrator", in = ["-x"], initial = 1 }
 x = "x"
 [expect]
 "x at 1" = { value = "exp(-1)", within = 1e-6 }
+"x period" = { value = "300 ms", within = "20 ms" }
 [published]
 author = "A"
 title = "T"
@@ -308,6 +309,8 @@ within = 0.01
   ASSERT_TRUE(made.diagram.published);
   EXPECT_EQ(made.diagram.published->values.at(0).expected.time, 5);
   EXPECT_EQ(made.diagram.expectations.at(0).time, 5);
+  EXPECT_EQ(made.diagram.expectations.at(1).value, 1.5);
+  EXPECT_EQ(made.diagram.expectations.at(1).within, 0.1);
 }
 
 // The small difference of two large signals is not blown up: no input is weighted more than ×10.

@@ -52,6 +52,35 @@ until = 4
   EXPECT_EQ(result_of("x at 0").actual, 1);
 }
 
+// A ring of 3 rad/s turns in 2π/3: the passages are cubics of some hundred rows a period, 1e-8 of it, and the
+// run errs by 1e-8 a period or less. A comparator's rises are known to a row, 100 s/32768. What rises once,
+// or not at all, has no period, and the first half of the run has no part in it where the second has two
+// rises.
+TEST(Expectations, FindPeriods) {
+  const Compiled made(R"toml(
+x     = { type = "integrator", in = ["3*y"], initial = 0.3 }
+y     = { type = "integrator", in = ["-3*x"] }
+c     = { type = "comparator", in = ["x"] }
+decay = { type = "integrator", in = ["-decay"], initial = 1 }
+slow  = { type = "time-function", formula = "-cos(0.1*time)" }
+late  = { type = "time-function", formula = "if(time < 45, sin(9*time), 2 + sin(time))" }
+)toml",
+                      R"toml([run]
+until = 100
+[expect]
+"x period"     = { value = "2*pi/3", within = 1e-8 }
+"c period"     = { value = "2*pi/3 * 1000 ms", within = 1e-3 }
+"late period"  = { value = "2*pi", within = 1e-6 }
+"slow period"  = { value = "20*pi", within = 1e-6 }
+"decay period" = { value = 1, within = 9 }
+)toml");
+  const auto results = check(made);
+  ASSERT_EQ(results.size(), 5U);
+  for (const auto& result : results)
+    EXPECT_EQ(result.met, result.expectation.output != "decay") << to_text({result});
+  EXPECT_EQ(to_text({results.back()}), "FAILED  decay period = not known, expected 1 ± 9\n");
+}
+
 TEST(Expectations, AskForEachTimeOnceInOrder) {
   const Compiled made(kCircle, R"toml([run]
 until = 4

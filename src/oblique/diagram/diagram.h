@@ -67,7 +67,14 @@ struct OutputSpec {
 
 /// What a diagram is known to give: an output at a time, or its extreme over the run.
 struct Expectation {
-  enum class Kind { at_time, maximum, minimum };
+  enum class Kind {
+    at_time,
+    maximum,
+    minimum,
+    /// [s], the mean time from rise to rise through the middle between the extremes, over the second half of
+    /// the run, or all of it where that is too short
+    period,
+  };
   std::string text;  ///< the key as written, "side at pi"
   std::string output;
   Kind kind = Kind::at_time;

@@ -12,18 +12,19 @@
 namespace oblique::diagram {
 namespace {
 
-constexpr std::string_view kAt = " at ", kMaximum = " maximum", kMinimum = " minimum";
+constexpr std::string_view kAt = " at ", kMaximum = " maximum", kMinimum = " minimum", kPeriod = " period";
 
 /// Times may exceed the end of the run by rounding: "300 ms" is not quite 0.3 s.
 constexpr double kRounding = 1e-12;
 
-/// Splits the key of an expectation; false where it has not one of the three forms.
+/// Splits the key of an expectation; false where it has none of their forms.
 bool split_key(const text::Entry& entry, const std::string& what, double until, Expectation& expectation,
                text::Diagnostics& diagnostics) {
   const std::string& key = entry.key;
   const std::string& file = expectation.place.file;
   for (const auto& [word, kind] :
-       {std::pair{kMaximum, Expectation::Kind::maximum}, std::pair{kMinimum, Expectation::Kind::minimum}}) {
+       {std::pair{kMaximum, Expectation::Kind::maximum}, std::pair{kMinimum, Expectation::Kind::minimum},
+        std::pair{kPeriod, Expectation::Kind::period}}) {
     if (!key.ends_with(word) || key.size() == word.size()) continue;
     expectation.kind = kind;
     expectation.output = key.substr(0, key.size() - word.size());
@@ -33,7 +34,7 @@ bool split_key(const text::Entry& entry, const std::string& what, double until, 
   if (at == std::string::npos || at == 0) {
     diagnostics.add({expectation.place,
                      fmt::format("{} cannot read '{}'", what, key),
-                     R"("OUTPUT at TIME", "OUTPUT maximum" or "OUTPUT minimum")",
+                     R"("OUTPUT at TIME", "OUTPUT maximum", "OUTPUT minimum" or "OUTPUT period")",
                      {}});
     return false;
   }
@@ -76,9 +77,10 @@ std::optional<double> read_expected_time(const std::string& file, const text::Va
   return std::nullopt;
 }
 
-text::Unit unit_of_output(const Diagram& diagram, std::string_view output) {
+text::Unit unit_of(const Diagram& diagram, const Expectation& expectation) {
+  if (expectation.kind == Expectation::Kind::period) return text::parse_unit("s").value();
   const auto found = std::find_if(diagram.outputs.begin(), diagram.outputs.end(),
-                                  [&](const OutputSpec& spec) { return spec.name == output; });
+                                  [&](const OutputSpec& spec) { return spec.name == expectation.output; });
   const std::string unit = found == diagram.outputs.end() ? OutputSpec{}.unit : found->unit;
   return unit_on(diagram.machine.profile, unit);
 }
@@ -95,7 +97,7 @@ std::vector<Expectation> read_expectations(const Diagram& diagram, const text::V
     const bool good_key = split_key(entry, what, until, expectation, diagnostics);
     text::TableReader reader(file, entry.value, fmt::format("{} '{}'", what, entry.key), diagnostics);
     if (entry.value.kind != text::Value::Kind::table) continue;
-    const auto expected = text::read_expected_value(reader, unit_of_output(diagram, expectation.output));
+    const auto expected = text::read_expected_value(reader, unit_of(diagram, expectation));
     if (!good_key || !expected) continue;
     expectation.value = expected->value;
     expectation.within = expected->within;
@@ -110,6 +112,8 @@ std::string expectation_key(const Expectation& expectation) {
       return fmt::format("{}{}", expectation.output, kMaximum);
     case Expectation::Kind::minimum:
       return fmt::format("{}{}", expectation.output, kMinimum);
+    case Expectation::Kind::period:
+      return fmt::format("{}{}", expectation.output, kPeriod);
     case Expectation::Kind::at_time:
       break;
   }

@@ -23,8 +23,9 @@ std::optional<double> read_expected_time(const std::string& file, const text::Va
                                          const text::Place& place, const std::string& what, double until,
                                          text::Diagnostics& diagnostics);
 
-/// The unit of an output, in which what is expected of it may be given; "1" where it is any text for people.
-text::Unit unit_of_output(const Diagram& diagram, std::string_view output);
+/// The unit in which what is expected may be given: that of the output, "1" where it is any text for people;
+/// of a period seconds.
+text::Unit unit_of(const Diagram& diagram, const Expectation& expectation);
 
 /// "side at 3.5", "side maximum": the key of an expectation that has no text of its own.
 std::string expectation_key(const Expectation& expectation);

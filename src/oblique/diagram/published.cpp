@@ -14,7 +14,8 @@ namespace oblique::diagram {
 namespace {
 
 constexpr std::string_view kProgramme = "programme", kEquations = "equations";
-constexpr std::string_view kMaximumWord = "maximum", kMinimumWord = "minimum", kEndWord = "end";
+constexpr std::string_view kMaximumWord = "maximum", kMinimumWord = "minimum", kEndWord = "end",
+                           kPeriodWord = "period";
 
 /// Before it there were no analog computers, and after it no prints.
 constexpr double kFirstYear = 1800, kLastYear = 2199;
@@ -158,12 +159,15 @@ class PublishedReader {
     published_.values.push_back(std::move(value));
   }
 
-  /// When: a time, "maximum", "minimum", or "end", which is meant where nothing is said.
+  /// When: a time, "maximum", "minimum", "period", or "end", which is meant where nothing is said.
   bool read_at(text::TableReader& reader, Expectation& expected) {
     const text::Value* const at = reader.find("at");
     const bool is_text = at != nullptr && at->kind == text::Value::Kind::string;
-    if (is_text && (at->text == kMaximumWord || at->text == kMinimumWord)) {
-      expected.kind = at->text == kMaximumWord ? Expectation::Kind::maximum : Expectation::Kind::minimum;
+    for (const auto& [word, kind] : {std::pair{kMaximumWord, Expectation::Kind::maximum},
+                                     std::pair{kMinimumWord, Expectation::Kind::minimum},
+                                     std::pair{kPeriodWord, Expectation::Kind::period}}) {
+      if (!is_text || at->text != word) continue;
+      expected.kind = kind;
       expected.text = expectation_key(expected);
       return true;
     }
@@ -183,21 +187,27 @@ class PublishedReader {
   /// The unit of `value` and `within`, and its factor; any text may stand for a unit if the output has it
   /// too.
   std::optional<text::Unit> read_unit(text::TableReader& reader, PublishedValue& value) {
-    const text::Unit own = unit_of_output(diagram_, value.expected.output);
+    const text::Unit own = unit_of(diagram_, value.expected);
+    const bool is_time = value.expected.kind == Expectation::Kind::period;
     const auto unit = reader.string("unit");
+    if (!unit && is_time) value.unit = "s";
     if (!unit) return own;
     value.unit = *unit;
     const auto output =
         std::find_if(diagram_.outputs.begin(), diagram_.outputs.end(),
                      [&](const OutputSpec& spec) { return spec.name == value.expected.output; });
-    const std::string output_unit = output == diagram_.outputs.end() ? OutputSpec{}.unit : output->unit;
+    const std::string output_unit = is_time                            ? "s"
+                                    : output == diagram_.outputs.end() ? OutputSpec{}.unit
+                                                                       : output->unit;
     if (*unit == output_unit) return own;
     auto known = text::parse_unit(*unit);
     const bool output_known = text::parse_unit(output_unit).has_value();
     const auto factor = known && output_known ? text::factor_between(*known, own) : std::nullopt;
     if (!factor || *factor == 0) {
-      reader.report("unit", fmt::format("'unit' of [[published.value]] is '{}'", *unit),
-                    fmt::format("a unit that '{}', the unit of the output, can be given in", output_unit));
+      reader.report(
+          "unit", fmt::format("'unit' of [[published.value]] is '{}'", *unit),
+          is_time ? "a unit of time"
+                  : fmt::format("a unit that '{}', the unit of the output, can be given in", output_unit));
       return std::nullopt;
     }
     value.factor = *factor;
@@ -215,6 +225,7 @@ class PublishedReader {
 std::string at_text(const Expectation& expected) {
   if (expected.kind == Expectation::Kind::maximum) return text::toml_string(kMaximumWord);
   if (expected.kind == Expectation::Kind::minimum) return text::toml_string(kMinimumWord);
+  if (expected.kind == Expectation::Kind::period) return text::toml_string(kPeriodWord);
   const std::string before = expected.output + " at ";
   if (expected.text.starts_with(before)) return text::toml_string(expected.text.substr(before.size()));
   return fmt::format("{}", expected.time);

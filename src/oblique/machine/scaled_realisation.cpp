@@ -68,6 +68,10 @@ diagram::Diagram in_machine_time(diagram::Diagram diagram, double time) {
   diagram.run.until *= time;
   if (diagram.run.max_step) *diagram.run.max_step *= time;
   const auto move = [time](diagram::Expectation& expectation) {
+    if (expectation.kind == diagram::Expectation::Kind::period) {
+      expectation.value *= time;
+      expectation.within *= time;
+    }
     if (expectation.kind != diagram::Expectation::Kind::at_time) return;
     expectation.time *= time;
     expectation.text = diagram::expectation_key(expectation);

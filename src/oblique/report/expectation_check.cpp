@@ -2,7 +2,9 @@
 #include <oblique/report/expectation_check.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -18,6 +20,59 @@ double value_at(const solve::Trajectory& extra, double time, std::size_t column)
   return std::nan("");  // the run was made without expectation_times
 }
 
+/// Rows of a run that a period is found by.
+constexpr int kRowsOfPeriods = 32768;
+
+/// When a signal passes a level between the rows `k` − 1 and `k`: the time as a cubic of the value through
+/// four rows where the signal rises through them all, else on the line between the two.
+double passage(const solve::Trajectory& rows, std::size_t k, std::size_t column, double level) {
+  constexpr std::size_t kPoints = 4;
+  bool rises = k >= 2 && k + 1 < rows.rows();
+  std::array<double, kPoints> t{}, y{};
+  for (std::size_t i = 0; rises && i < kPoints; ++i) {
+    t[i] = rows.at(k - 2 + i, 0);
+    y[i] = rows.at(k - 2 + i, column) - level;
+    rises = i == 0 || y[i] > y[i - 1];
+  }
+  const double before = rows.at(k - 1, column) - level, after = rows.at(k, column) - level;
+  const double from = rows.at(k - 1, 0), to = rows.at(k, 0);
+  const double straight = from + (to - from) * before / (before - after);
+  if (!rises) return straight;
+  double time = 0;  // Lagrange's polynomial at y = 0
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    double term = t[i];
+    for (std::size_t j = 0; j < kPoints; ++j) {
+      if (j != i) term *= y[j] / (y[j] - y[i]);
+    }
+    time += term;
+  }
+  return time >= from && time <= to ? time : straight;
+}
+
+/// The mean time from rise to rise through the middle between the extremes, from a row on; not a number where
+/// it does not rise twice.
+double period_from(const solve::Trajectory& rows, std::size_t first, std::size_t column) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t k = first; k < rows.rows(); ++k) {
+    low = std::min(low, rows.at(k, column));
+    high = std::max(high, rows.at(k, column));
+  }
+  const double level = (low + high) / 2;
+  std::vector<double> rises;
+  for (std::size_t k = first + 1; k < rows.rows(); ++k) {
+    if (rows.at(k - 1, column) < level && rows.at(k, column) >= level)
+      rises.push_back(passage(rows, k, column, level));
+  }
+  if (rises.size() < 2) return std::nan("");
+  return (rises.back() - rises.front()) / static_cast<double>(rises.size() - 1);
+}
+
+/// The period in the second half of the rows, or in all of them where that is too short.
+double period(const solve::Trajectory& rows, std::size_t column) {
+  const double late = period_from(rows, rows.rows() / 2, column);
+  return std::isnan(late) ? period_from(rows, 0, column) : late;
+}
+
 /// `column` counts the time too.
 double actual_value(const diagram::Expectation& expectation, const solve::Run& run, std::size_t column) {
   switch (expectation.kind) {
@@ -25,6 +80,8 @@ double actual_value(const diagram::Expectation& expectation, const solve::Run& r
       return run.extremes.at(column - 1).maximum.value;
     case diagram::Expectation::Kind::minimum:
       return run.extremes.at(column - 1).minimum.value;
+    case diagram::Expectation::Kind::period:
+      return period(run.extra, column);
     case diagram::Expectation::Kind::at_time:
       break;
   }
@@ -35,9 +92,9 @@ template <class Result>
 std::string lines_of(const std::vector<Result>& results) {
   std::string text;
   for (const Result& result : results) {
+    const std::string actual = std::isnan(result.actual) ? "not known" : fmt::format("{}", result.actual);
     text += fmt::format("{}  {} = {}, expected {} ± {}\n", result.met ? "ok    " : "FAILED",
-                        result.expectation.text, result.actual, result.expectation.value,
-                        result.expectation.within);
+                        result.expectation.text, actual, result.expectation.value, result.expectation.within);
   }
   return text;
 }
@@ -56,7 +113,8 @@ void ask_for_expectations(std::span<const diagram::Expectation> expectations, co
                          "check the whole run, without a saved state"});
   }
   for (const diagram::Expectation& e : expectations)
-    options.extremes = options.extremes || e.kind != diagram::Expectation::Kind::at_time;
+    options.extremes = options.extremes || e.kind == diagram::Expectation::Kind::maximum ||
+                       e.kind == diagram::Expectation::Kind::minimum;
 }
 
 void ask_for_expectations(const diagram::Diagram& diagram, solve::RunOptions& options) {
@@ -69,8 +127,13 @@ std::vector<double> expectation_times(const diagram::Diagram& diagram, double un
 
 std::vector<double> expectation_times(std::span<const diagram::Expectation> expectations, double until) {
   std::vector<double> times;
+  bool has_period = false;
   text::Diagnostics diagnostics;
   for (const diagram::Expectation& e : expectations) {
+    if (e.kind == diagram::Expectation::Kind::period && !has_period) {
+      for (int k = 0; k <= kRowsOfPeriods; ++k) times.push_back(until * k / kRowsOfPeriods);
+      has_period = true;
+    }
     if (e.kind != diagram::Expectation::Kind::at_time) continue;
     if (e.time < 0 || e.time > until) {
       diagnostics.add({e.place,

@@ -96,6 +96,7 @@ std::string number_within(double value, double within) {
   const int digits = std::isfinite(told_apart)
                          ? std::clamp(static_cast<int>(std::floor(told_apart)) + 3, kLeast, kMost)
                          : kLeast;
+  if (std::isnan(value)) return "not known";
   return std::abs(value) < within / 1000 ? "0" : fmt::format("{:.{}g}", value, digits);
 }
 
