@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/diagram/block_definition.h>
+
 #include <oblique/text/expression_printer.h>
 
 #include <cmath>
@@ -338,6 +339,42 @@ TEST(ParseBlock, ReportsAllFindingsInTheOrderOfTheFile) {
     for (const text::Diagnostic& d : error.diagnostics()) lines.push_back(d.place.position.line);
     EXPECT_THAT(lines, ElementsAre(3, 5, 5, 8, 10)) << error.what();
   }
+}
+
+// What parameters must meet together is said in the block's file, and told with the values that do not.
+TEST(BlockDefinition, SaysWhatItsParametersMustMeetTogether) {
+  const std::string head = kHead + "valid = [\"low <= high\", \"width < 2*high\"]\n", body = R"toml([outputs]
+out = {}
+[parameters]
+low = { default = 0, unit = "s" }
+high = { default = 1, unit = "s" }
+width = { default = 0.5 }
+[equations]
+out = "low"
+)toml";
+  BlockLibrary library;
+  library.add(parse_block(head + body, "b.toml", "b"));
+  const auto message = [&](const std::string& settings) {
+    try {
+      flatten(
+          parse_diagram("format = \"oblique-diagram/1\"\n[blocks]\nx = { type = \"b\"" + settings + " }\n",
+                        "d.toml"),
+          library);
+    } catch (const DiagramError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message(""), "");
+  EXPECT_EQ(message(", low = 1"), "");
+  EXPECT_EQ(message(", low = 1.5"),
+            "d.toml:3:1: 'x' (b) has low = 1.5 [s] and high = 1 [s]; expected low <= high");
+  EXPECT_EQ(message(", width = 2"),
+            "d.toml:3:1: 'x' (b) has width = 2 and high = 1 [s]; expected width < 2*high");
+  EXPECT_THAT(block_message("valid = \"low < high\"\n" + body), HasSubstr("'valid' is no list of texts"));
+  EXPECT_THAT(block_message("valid = [\"low < hihg\"]\n" + body), HasSubstr("did you mean 'high'?"));
+  EXPECT_THAT(block_message("valid = [\"low > high\"]\n" + body),
+              HasSubstr("the defaults do not meet 'low > high'"));
 }
 
 TEST(BlockDefinition, SaysWhatItRequires) {

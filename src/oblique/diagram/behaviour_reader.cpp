@@ -38,6 +38,7 @@ class BehaviourReader {
         expressions_.resolve(*definition_.check_interval, *interval, "'check_interval'", constants_);
     }
     if (const text::Value* const needs = reader_.table("requires")) read_needs(*needs);
+    if (const text::Value* const valid = reader_.find("valid")) read_relations(*valid);
   }
 
  private:
@@ -62,6 +63,29 @@ class BehaviourReader {
       if (expressions_.resolve(*count, entry.value, what, constants_))
         definition_.needs.push_back({*kind, std::move(*count)});
     }
+  }
+
+  void read_relations(const text::Value& list) {
+    const bool texts =
+        list.kind == text::Value::Kind::array &&
+        std::all_of(list.elements.begin(), list.elements.end(),
+                    [](const text::Value& element) { return element.kind == text::Value::Kind::string; });
+    if (!texts) {
+      report(list.position, "'valid' is no list of texts", R"(conditions on the parameters, ["low < high"])");
+      return;
+    }
+    std::vector<std::string> parameters(constants_.begin(), constants_.end() - 1);  // but the polarity
+    for (const text::Value& element : list.elements) {
+      auto condition = expressions_.read(element, "'valid'");
+      if (condition && expressions_.resolve(*condition, element, "'valid'", parameters))
+        definition_.relations.push_back({std::move(*condition), element.text});
+    }
+    std::vector<double> defaults;
+    for (const ParameterDefinition& parameter : definition_.parameters)
+      defaults.push_back(parameter.default_value);
+    if (const ParameterRelation* const unmet = definition_.unmet_relation(defaults))
+      report(list.position, fmt::format("the defaults do not meet '{}'", unmet->text),
+             "defaults with which the block works");
   }
 
   void report(text::SourcePosition position, std::string what, std::string expected = {},

@@ -293,6 +293,17 @@ const Behaviour* BlockDefinition::choose_behaviour(const std::vector<double>& va
   return nullptr;
 }
 
+const ParameterRelation* BlockDefinition::unmet_relation(const std::vector<double>& values) const {
+  const auto lookup = [&](std::string_view parameter) -> std::optional<double> {
+    const auto index = find_parameter(parameter);
+    return index ? std::optional(values[*index]) : std::nullopt;
+  };
+  const auto unmet = std::find_if(relations.begin(), relations.end(), [&](const ParameterRelation& relation) {
+    return text::evaluate(relation.condition, lookup) == 0;
+  });
+  return unmet == relations.end() ? nullptr : &*unmet;
+}
+
 BlockDefinition parse_block(std::string_view text, std::string file, std::string name) {
   BlockDefinition definition;
   definition.name = std::move(name);

@@ -134,6 +134,12 @@ struct BlockPlace {
   bool operator==(const BlockPlace& other) const;  ///< without places in the file
 };
 
+/// What the parameters of a block must meet together: "width < period".
+struct ParameterRelation {
+  text::Expression condition;
+  std::string text;
+};
+
 /// A kind of block: `blocks/<name>.toml`. Primitive ones have behaviours, composite ones have inner blocks.
 struct BlockDefinition {
   std::string name;
@@ -152,8 +158,9 @@ struct BlockDefinition {
   std::vector<MemoryRule> memories;
   std::vector<EventRule> events;
   std::optional<text::Expression>
-      check_interval;              ///< [s] of parameters: how often at least its switches look
-  std::vector<ElementNeed> needs;  ///< `requires`
+      check_interval;                        ///< [s] of parameters: how often at least its switches look
+  std::vector<ElementNeed> needs;            ///< `requires`
+  std::vector<ParameterRelation> relations;  ///< `valid`
 
   std::vector<BlockInstance> blocks;
   std::vector<BlockPlace> layout;  ///< of the inner blocks, where an open composite is drawn
@@ -168,6 +175,9 @@ struct BlockDefinition {
   std::optional<std::size_t> find_output(std::string_view output) const;
   std::optional<std::size_t> find_parameter(std::string_view parameter) const;
   std::optional<std::size_t> find_memory(std::string_view memory) const;
+
+  /// The first relation that these values of the parameters do not meet; none: they meet all.
+  const ParameterRelation* unmet_relation(const std::vector<double>& values) const;
 
   /// The first case whose condition holds, with the values of the parameters in their order.
   const Behaviour* choose_behaviour(const std::vector<double>& values, double polarity) const;

@@ -8,6 +8,7 @@
 
 #include <oblique/diagram/expectations.h>
 #include <oblique/diagram/machine_defaults.h>
+#include <oblique/diagram/names.h>
 #include <oblique/diagram/overrides.h>
 #include <oblique/diagram/terms.h>
 #include <oblique/diagram/timeline.h>
@@ -186,10 +187,29 @@ class Layout {
       block.points.resize(block.definition->parameters.size());
       block.points[k] = node.wired->parameters[k].points.value_or(*default_points);
     }
+    check_relations(node);
     block.choose_behaviour();
     block.place = node.place;
     node.flat = flat_.blocks.size();
     flat_.blocks.push_back(std::move(block));
+  }
+
+  void check_relations(const Node& node) {
+    const BlockDefinition& definition = *node.wired->definition;
+    const ParameterRelation* const unmet = definition.unmet_relation(node.parameters);
+    if (unmet == nullptr) return;
+    std::vector<std::string> values;
+    for (const text::Expression* const name : names_in(unmet->condition)) {
+      const auto k = definition.find_parameter(name->name);
+      if (!k) continue;
+      const std::string& unit = definition.parameters[*k].unit;
+      values.push_back(fmt::format("{} = {}{}", name->name, node.parameters[*k],
+                                   unit == "1" ? "" : fmt::format(" [{}]", unit)));
+    }
+    diagnostics_.add({node.place,
+                      fmt::format("'{}' ({}) has {}", node.path, definition.name, fmt::join(values, " and ")),
+                      unmet->text,
+                      {}});
   }
 
   /// Connects the inputs of all blocks inside a composite whose own inputs are known.
