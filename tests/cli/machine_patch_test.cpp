@@ -63,7 +63,7 @@ TEST_F(PatchForMachine, WritesADiagramThatRunsAndItsComponentList) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
   EXPECT_THAT(outcome.err, HasSubstr("elements of EAI PACE TR-10 (1959)\n"));
-  EXPECT_THAT(outcome.err, ContainsRegex("multipliers +6 +9\n"));
+  EXPECT_THAT(outcome.err, ContainsRegex("multipliers +5 +9\n"));
   EXPECT_THAT(outcome.err, HasSubstr("\nit fits\n"));
   EXPECT_EQ(oblique("run made.toml").status, 0);
   const Outcome check = oblique("check made.toml");
@@ -77,7 +77,7 @@ TEST_F(PatchForMachine, WritesADiagramThatRunsAndItsComponentList) {
 TEST_F(PatchForMachine, WritesTheDiagramThatDoesNotFitAndSaysWhatIsMissing) {
   const Outcome outcome = patch("four-bar", "--machine tr-10");
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("it does not fit; missing: multipliers (7)\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("it does not fit; missing: multipliers (6)\n"));
   EXPECT_THAT(outcome.out, StartsWith("# Coordinates"));
   EXPECT_THAT(outcome.out, HasSubstr("profile   = \"tr-10\"\ninverting = true\n"));
 }

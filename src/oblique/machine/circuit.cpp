@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -55,8 +56,9 @@ class Reducer {
     CircuitTerm value;  ///< of a reduced or kept block's first output
     std::optional<bool> gives_nothing;
   };
-  /// A product of two weighted signals, in any order.
+  /// A weighted signal; of the reference without an element.
   using Factor = std::tuple<std::size_t, std::size_t, double>;
+  using Sum = std::vector<Factor>;  ///< sorted
 
   /// A signal as a weight of an element's output or of the reference.
   CircuitTerm resolve(diagram::SignalRef signal) {
@@ -94,7 +96,7 @@ class Reducer {
       case Role::squarer:
         return has_defaults(block) ? product(index) : std::nullopt;
       case Role::comparator:
-        return repeated(block);
+        return compared(index);
       default:
         return std::nullopt;
     }
@@ -167,15 +169,44 @@ class Reducer {
     if (gives_nothing(index)) return CircuitTerm{0, std::nullopt};
     const auto [x, y] = factors(flat_.blocks[index]);
     const auto a = single(x, 1), b = single(y, 1);
-    if (!a || !b) return std::nullopt;
-    if (!a->signal) return CircuitTerm{a->weight * b->weight, b->signal};
-    if (!b->signal) return CircuitTerm{a->weight * b->weight, a->signal};
-    const Factor one = key_of(*a), other = key_of(*b);
-    const auto [found, is_new] =
-        products_.try_emplace(one < other ? std::pair(one, other) : std::pair(other, one), index);
+    if (a && !a->signal)
+      return b ? std::optional(CircuitTerm{a->weight * b->weight, b->signal}) : std::nullopt;
+    if (b && !b->signal)
+      return a ? std::optional(CircuitTerm{a->weight * b->weight, a->signal}) : std::nullopt;
+    // Of factors that differ from others by a constant the product does too.
+    Sum one = sum_of(x), other = sum_of(y);
+    const double weight = std::get<2>(one.front()) * std::get<2>(other.front());
+    for (Sum* const sum : {&one, &other}) {
+      const double first = std::get<2>(sum->front());
+      for (Factor& factor : *sum) std::get<2>(factor) /= first;
+    }
+    const auto [found, is_new] = products_.try_emplace(
+        one < other ? std::pair(one, other) : std::pair(other, one), std::pair(index, weight));
     if (is_new) return std::nullopt;
+    const auto& [formed, of_formed] = found->second;
+    if (blocks_[formed].state != State::kept) keep(formed);
+    return CircuitTerm{weight / of_formed, blocks_[formed].value.signal};
+  }
+
+  /// A comparator of a comparator is one too many, and so is a second one of what is compared already.
+  std::optional<CircuitTerm> compared(std::size_t index) {
+    const diagram::FlatBlock& block = flat_.blocks[index];
+    if (const auto value = repeated(block)) return value;
+    if (block.inputs.size() != 1) return std::nullopt;
+    const Sum sum = sum_of(gathered(block, 0));
+    const auto [found, is_new] = comparators_.try_emplace({block.definition, block.parameters, sum}, index);
+    if (is_new || found->second == index) return std::nullopt;
     if (blocks_[found->second].state != State::kept) keep(found->second);
     return blocks_[found->second].value;
+  }
+
+  static Sum sum_of(const CircuitInput& input) {
+    Sum sum;
+    for (const CircuitTerm& term : input.terms)
+      sum.push_back(term.signal ? key_of(term)
+                                : Factor{std::numeric_limits<std::size_t>::max(), 0, term.weight});
+    std::sort(sum.begin(), sum.end());
+    return sum;
   }
 
   /// A comparator of a comparator, as before a switch, is one too many.
@@ -299,28 +330,26 @@ class Reducer {
     circuit_.elements[index].inputs = std::move(inputs);
   }
 
-  /// Puts an amplifier before an input that takes one signal of weight 1.
+  /// Puts an amplifier before an input that takes one signal of weight 1, one for all that take the same.
   void scale(std::size_t index, const std::string& port, CircuitInput& input) {
+    const bool is_one = input.terms.size() == 1 && input.terms.front().signal;
     double sign = 1;
-    std::optional<Factor> key;
-    if (input.terms.size() == 1 && input.terms.front().signal) {
-      sign = input.terms.front().weight < 0 ? -1 : 1;
+    if (is_one && input.terms.front().weight < 0) {
+      sign = -1;
       input.terms.front().weight *= sign;
-      key = key_of(input.terms.front());
     }
-    if (key) {
-      if (const auto found = scalers_.find(*key); found != scalers_.end()) {
-        input.terms = {{sign, found->second}};
-        return;
-      }
+    const Sum key = sum_of(input);
+    if (const auto found = scalers_.find(key); found != scalers_.end()) {
+      input.terms = {{sign, found->second}};
+      return;
     }
     CircuitElement scaler;
-    scaler.path = key ? circuit_.elements[input.terms.front().signal->block].path + ".scaled"
-                      : circuit_.elements[index].path + "." + port;
+    scaler.path = is_one ? circuit_.elements[input.terms.front().signal->block].path + ".scaled"
+                         : circuit_.elements[index].path + "." + port;
     scaler.definition = &element_block(library_, Role::summer);
     scaler.inputs = {std::move(input)};
     const diagram::SignalRef signal = add(std::move(scaler), order_[index]);
-    if (key) scalers_.emplace(*key, signal);
+    scalers_.emplace(key, signal);
     input = {false, {{sign, signal}}};
   }
 
@@ -356,8 +385,11 @@ class Reducer {
   std::vector<Block> blocks_;
   Circuit circuit_;
   std::vector<std::size_t> order_;  ///< of each element the flat block that asked for it
-  std::map<std::pair<Factor, Factor>, std::size_t> products_;  ///< with the flat blocks that form them
-  std::map<Factor, diagram::SignalRef> scalers_;
+  /// With the flat blocks that form them, and the weights of these.
+  std::map<std::pair<Sum, Sum>, std::pair<std::size_t, double>> products_;
+  std::map<Sum, diagram::SignalRef> scalers_;
+  /// With the flat blocks that they are, by kind, parameters and what they compare.
+  std::map<std::tuple<const diagram::BlockDefinition*, std::vector<double>, Sum>, std::size_t> comparators_;
   text::Diagnostics diagnostics_;
 };
 

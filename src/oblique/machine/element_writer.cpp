@@ -144,6 +144,8 @@ class Writer {
   /// Adds weight · signal to an input, through a potentiometer where the weight is no gain of the machine.
   void connect(Terms& terms, double weight, const std::optional<diagram::SignalRef>& signal,
                std::span<const double> gains) {
+    constexpr int kWeightDigits = 15;  // 0.1*3 is 0.3
+    weight = text::nearest_decimal(weight, kWeightDigits);
     const bool negative = weight < 0;
     const InputWeight split = split_weight(std::abs(weight), gains);
     std::string from = signals_.source(signal, negative && !signed_);

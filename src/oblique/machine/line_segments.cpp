@@ -107,6 +107,7 @@ class Fitter {
       double most = -1;
       for (std::size_t k = 0; k < worst.size(); ++k) {
         if (points[k + 1].x - points[k].x < kHair * (to_ - from_)) continue;
+        if (worst[k].x <= points[k].x || worst[k].x >= points[k + 1].x) continue;
         const double error = std::abs(above(points[k], points[k + 1], worst[k]));
         if (error > most) {
           most = error;

@@ -24,6 +24,7 @@
 #include <oblique/machine/signal_ranges.h>
 #include <oblique/machine/tabulated_functions.h>
 #include <oblique/solve/solve_error.h>
+#include <oblique/text/nearest_decimal.h>
 
 namespace oblique::machine {
 namespace {
@@ -65,15 +66,17 @@ std::string names_of(const std::vector<TabulatedFunction>& functions) {
 /// The time of the run, and of what is expected and was published of it, on the machine.
 diagram::Diagram in_machine_time(diagram::Diagram diagram, double time) {
   if (time == 1) return diagram;
-  diagram.run.until *= time;
-  if (diagram.run.max_step) *diagram.run.max_step *= time;
-  const auto move = [time](diagram::Expectation& expectation) {
+  constexpr int kDigits = 15;  // 3 times 0.2 s are 0.6 s
+  const auto moved = [time](double moment) { return text::nearest_decimal(moment * time, kDigits); };
+  diagram.run.until = moved(diagram.run.until);
+  if (diagram.run.max_step) diagram.run.max_step = moved(*diagram.run.max_step);
+  const auto move = [&](diagram::Expectation& expectation) {
     if (expectation.kind == diagram::Expectation::Kind::period) {
-      expectation.value *= time;
-      expectation.within *= time;
+      expectation.value = moved(expectation.value);
+      expectation.within = moved(expectation.within);
     }
     if (expectation.kind != diagram::Expectation::Kind::at_time) return;
-    expectation.time *= time;
+    expectation.time = moved(expectation.time);
     expectation.text = diagram::expectation_key(expectation);
   };
   std::for_each(diagram.expectations.begin(), diagram.expectations.end(), move);
@@ -220,6 +223,7 @@ class MachineScaling::State {
         if (!term.signal || seen[term.signal->block]) continue;
         const std::size_t factor = term.signal->block;
         seen[factor] = true;
+        if (circuit_.elements[factor].role == Role::comparator) continue;  // has its levels and no more
         if (is_product(circuit_.elements[factor].role)) {
           give_factors_room(factor, by, seen);
         } else {

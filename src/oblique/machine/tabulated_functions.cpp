@@ -25,6 +25,8 @@ namespace {
 /// Of the span of a function: by less than this a straight line is what it says.
 constexpr double kStraight = 1e-12;
 constexpr double kMostError = 0.05;  ///< of the span: lines that miss by more do not stand for the function
+/// As many times larger signals than what becomes of them leave nothing of it on a machine.
+constexpr double kMostExcess = 1e4;
 
 class Tabulator {
  public:
@@ -33,8 +35,8 @@ class Tabulator {
             int segments)
       : flat_(flat),
         library_(library),
-        switches_corners_(machine.find(diagram::ElementKind::function_generator) == nullptr &&
-                          machine.find(diagram::ElementKind::comparator) != nullptr &&
+        has_generators_(machine.find(diagram::ElementKind::function_generator) != nullptr),
+        switches_corners_(!has_generators_ && machine.find(diagram::ElementKind::comparator) != nullptr &&
                           machine.find(diagram::ElementKind::multiplier) != nullptr),
         ranges_(ranges),
         until_(until),
@@ -140,7 +142,16 @@ class Tabulator {
     const bool is_exact = lines.error <= kStraight * (lines.high - lines.low);
     if (function.of_time && !is_exact) {
       const auto circuit = time_circuit(*function.of_time, until_);
-      if (circuit && has_lines(*circuit)) return drawn(*circuit, block, path);
+      if (circuit && is_better(*circuit, lines)) return drawn(*circuit, block, path);
+      if (circuit && circuit->excess > kMostExcess && !are_good(lines)) {
+        diagnostics_.add(
+            {block.place,
+             fmt::format("'{}' ({}) would be made of signals up to {:.2g} times as large as itself", path,
+                         block.definition->name, circuit->excess),
+             "a formula whose parts a machine can carry beside it",
+             "leave out what hardly counts, or let it run for a shorter time"});
+        return block;
+      }
     }
     if (!std::isfinite(lines.error)) {
       diagnostics_.add(
@@ -153,12 +164,12 @@ class Tabulator {
       return block;
     }
     const double low = lines.low, high = lines.high;
-    if (lines.error > kMostError * (high - low)) {
+    if (!are_good(lines)) {
       diagnostics_.add(
           {block.place,
-           fmt::format("{} straight lines miss '{}' ({}) by {:.2g}, which itself goes from {:.4g} to "
-                       "{:.4g}",
-                       lines.points.x.size() - 1, path, block.definition->name, lines.error, low, high),
+           fmt::format("{} straight line{} '{}' ({}) by {:.2g}, which itself goes from {:.4g} to {:.4g}",
+                       lines.points.x.size() - 1, lines.points.x.size() > 2 ? "s miss" : " misses", path,
+                       block.definition->name, lines.error, low, high),
            "a function that a function generator can be set for",
            text::Remedy{"more lines (", text::Setting{"segments"}, "), if the machine has them"}});
       return block;
@@ -193,14 +204,30 @@ class Tabulator {
     return lines;
   }
 
-  /// Whether straight lines stand for the functions in a circuit.
-  bool has_lines(const TimeCircuit& circuit) const {
-    return std::all_of(circuit.signals.begin(), circuit.signals.end(), [&](const TimeSignal& signal) {
-      if (signal.kind != TimeSignal::Kind::function) return true;
-      const LineSegments lines =
-          line_segments(value_of(signal), signal.range.low, signal.range.high, segments_);
-      return lines.error <= kMostError * (lines.high - lines.low);
-    });
+  static bool are_good(const LineSegments& lines) {
+    return std::isfinite(lines.error) && lines.error <= kMostError * (lines.high - lines.low);
+  }
+
+  /// Whether a circuit draws a formula better than straight lines behind a clock. What oscillates or jumps it
+  /// does where it can be carried; of what only grows or decays both err, elements by a part of their largest
+  /// signals.
+  bool is_better(const TimeCircuit& circuit, const LineSegments& lines) const {
+    constexpr double kExcess = 100;  // of what oscillates
+    // By which elements err, of their unit.
+    constexpr double kOfMultipliers = 5e-3, kOfOthers = 2e-4;
+    const bool multiplies =
+        std::any_of(circuit.signals.begin(), circuit.signals.end(),
+                    [](const TimeSignal& signal) { return signal.kind == TimeSignal::Kind::product; });
+    const bool has_lines =
+        std::all_of(circuit.signals.begin(), circuit.signals.end(), [&](const TimeSignal& signal) {
+          return signal.kind != TimeSignal::Kind::function ||
+                 are_good(line_segments(value_of(signal), signal.range.low, signal.range.high, segments_));
+        });
+    if (!has_lines || circuit.excess > kMostExcess) return false;
+    if (!has_generators_ || !are_good(lines) || circuit.excess <= 1 + kStraight) return true;
+    if (circuit.turns) return circuit.excess <= kExcess;
+    return circuit.excess * (multiplies ? kOfMultipliers : kOfOthers) <
+           lines.error / (lines.high - lines.low);
   }
 
   static std::function<double(double)> value_of(const TimeSignal& function) {
@@ -213,17 +240,24 @@ class Tabulator {
   diagram::FlatBlock drawn(const TimeCircuit& circuit, const diagram::FlatBlock& block,
                            const std::string& path) {
     const std::vector<TimeSum::Term>& terms = circuit.out.terms;
+    const bool is_one = terms.size() == 1 && circuit.out.constant == 0;
     std::vector<diagram::FlatInput> signals;
     signals.reserve(circuit.signals.size());
     for (const TimeSignal& signal : circuit.signals) {
       // What is the whole formula but for a factor has its size at once.
-      const bool is_all =
-          terms.size() == 1 && terms.front().signal == signals.size() && circuit.out.constant == 0;
-      signals.push_back(drawn(signal, is_all ? std::abs(terms.front().weight) : 1, signals, block, path));
+      const bool is_all = is_one && terms.front().signal == signals.size();
+      signals.push_back(drawn(signal, is_all ? terms.front().weight : 1, signals, block, path));
     }
-    diagram::FlatBlock sum = element_for(block, Role::summer, path);
-    sum.inputs = {sum_of(circuit.out, signals)};
-    return sum;
+    const diagram::FlatInput sum = sum_of(circuit.out, signals);
+    if (sum.terms.size() != 1 || sum.constant != 0) {
+      diagram::FlatBlock made = element_for(block, Role::summer, path);
+      made.inputs = {sum};
+      return made;
+    }
+    diagram::FlatBlock made = element_for(block, Role::gain, path);  // no element, but a weight
+    made.parameters[made.definition->find_parameter("factor").value()] = sum.terms.front().weight;
+    made.inputs = {{{{1, sum.terms.front().signal}}, 0}};
+    return made;
   }
 
   static diagram::FlatInput sum_of(const TimeSum& sum, const std::vector<diagram::FlatInput>& signals) {
@@ -237,8 +271,8 @@ class Tabulator {
     return input;
   }
 
-  /// A signal of a circuit as a sum of appended elements; `size` is the greatest value that these are to
-  /// have.
+  /// A signal of a circuit as a sum of appended elements, of which oscillations and exponentials are `size`
+  /// times as large.
   diagram::FlatInput drawn(const TimeSignal& signal, double size,
                            const std::vector<diagram::FlatInput>& signals, const diagram::FlatBlock& block,
                            const std::string& path) {
@@ -248,12 +282,8 @@ class Tabulator {
         return time();
       case TimeSignal::Kind::sine:
         return sine(signal, size, block, path);
-      case TimeSignal::Kind::exponential: {
-        diagram::FlatBlock integrator = element_for(block, Role::integrator, name);
-        set_initial(integrator, size * std::exp(signal.phase));
-        feed(integrator, {{{signal.rate, {flat_.blocks.size(), 0}}}, 0});
-        return {{{1 / size, append(std::move(integrator))}}, 0};
-      }
+      case TimeSignal::Kind::exponential:
+        return exponential(signal, size, block, path);
       case TimeSignal::Kind::product: {
         diagram::FlatBlock product = element_for(block, Role::multiplier, name);
         product.inputs = {sum_of(signal.a, signals), sum_of(signal.b, signals)};
@@ -273,19 +303,39 @@ class Tabulator {
     return {};
   }
 
-  /// sin(rate·t + phase) of a ring of two integrators, one for all of a rate.
+  /// exp(growth·t) of an integrator, one for all of a growth.
+  diagram::FlatInput exponential(const TimeSignal& wanted, double size, const diagram::FlatBlock& block,
+                                 const std::string& path) {
+    const auto [found, is_new] = exponentials_.try_emplace(wanted.growth);
+    if (is_new) {
+      found->second = {size, 0, {flat_.blocks.size(), 0}, {}};
+      diagram::FlatBlock integrator = element_for(block, Role::integrator, path + ".exponential");
+      set_initial(integrator, size);
+      feed(integrator, {{{wanted.growth, found->second.sine}}, 0});
+      append(std::move(integrator));
+    }
+    return {{{1 / found->second.size, found->second.sine}}, 0};
+  }
+
+  /// exp(growth·t) sin(rate·t + phase) of a ring of two integrators, one for all of a rate and growth.
   diagram::FlatInput sine(const TimeSignal& wanted, double size, const diagram::FlatBlock& block,
                           const std::string& path) {
-    const auto [found, is_new] = rings_.try_emplace(wanted.rate);
-    Ring& ring = found->second;
+    const auto [found, is_new] = rings_.try_emplace({wanted.rate, wanted.growth});
+    Source& ring = found->second;
     if (is_new) {
       ring = {size, wanted.phase, {flat_.blocks.size(), 0}, {flat_.blocks.size() + 1, 0}};
       diagram::FlatBlock sine = element_for(block, Role::integrator, path + ".source_sine");
       diagram::FlatBlock cosine = element_for(block, Role::integrator, path + ".source_cosine");
-      set_initial(sine, size * std::sin(wanted.phase));
-      set_initial(cosine, size * std::cos(wanted.phase));
-      feed(sine, {{{wanted.rate, ring.cosine}}, 0});
-      feed(cosine, {{{-wanted.rate, ring.sine}}, 0});
+      const double a = std::sin(wanted.phase), b = std::cos(wanted.phase);
+      set_initial(sine, std::abs(a) > kStraight ? size * a : 0);
+      set_initial(cosine, std::abs(b) > kStraight ? size * b : 0);
+      diagram::FlatInput sine_in{{{wanted.rate, ring.cosine}}, 0}, cosine_in{{{-wanted.rate, ring.sine}}, 0};
+      if (wanted.growth != 0) {
+        sine_in.terms.push_back({wanted.growth, ring.sine});
+        cosine_in.terms.push_back({wanted.growth, ring.cosine});
+      }
+      feed(sine, sine_in);
+      feed(cosine, cosine_in);
       append(std::move(sine));
       append(std::move(cosine));
     }
@@ -299,8 +349,7 @@ class Tabulator {
   }
 
   static void set_initial(diagram::FlatBlock& integrator, double value) {
-    integrator.parameters[integrator.definition->find_parameter("initial").value()] =
-        std::abs(value) > kStraight ? value : 0;
+    integrator.parameters[integrator.definition->find_parameter("initial").value()] = value;
   }
 
   /// Connects the summing input.
@@ -418,14 +467,16 @@ class Tabulator {
     }
   }
 
-  /// Two integrators that draw size·sin(rate·t + phase) and its cosine.
-  struct Ring {
+  /// What draws size·exp(growth·t) sin(rate·t + phase) and the same of the cosine; of an exponential the
+  /// first alone, without the sine.
+  struct Source {
     double size = 1, phase = 0;
     diagram::SignalRef sine, cosine;
   };
 
   diagram::FlatDiagram& flat_;
   const diagram::BlockLibrary& library_;
+  bool has_generators_;
   bool switches_corners_;
   const std::vector<SignalRange>& ranges_;
   double until_;
@@ -434,7 +485,8 @@ class Tabulator {
   std::size_t signals_ = 0;
   std::vector<bool> needed_;  ///< each signal, by an output or for the modes
   std::optional<std::size_t> clock_;
-  std::map<double, Ring> rings_;  ///< of each rate
+  std::map<std::pair<double, double>, Source> rings_;  ///< of each rate and growth
+  std::map<double, Source> exponentials_;              ///< of each growth
   std::vector<TabulatedFunction> functions_;
   text::Diagnostics diagnostics_;
 };

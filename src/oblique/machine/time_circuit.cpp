@@ -14,8 +14,9 @@
 //   circuit     a sum of signals that are circuits already
 //
 // What is linear becomes a circuit in a sine, an exponential or a condition; what is smooth becomes one
-// signal where it meets a circuit. At the end the signals are drawn over the run: where one has to be far
-// larger than what becomes of it, as exp(400 − t) times 0, a machine could not carry both.
+// signal where it meets a circuit. A function of what only grows and decays is smooth too: behind an
+// exponential that goes through decades no function generator could be set. At the end the signals are drawn
+// over the run, to tell how much larger they are than what becomes of them.
 #include <oblique/machine/time_circuit.h>
 
 #include <algorithm>
@@ -90,9 +91,10 @@ TimeSum sum_of(TimeSum a, const TimeSum& b) {
 struct Part {
   enum class Is { constant, linear, polynomial, smooth, circuit };
   Is is = Is::constant;
-  Expression formula;     ///< of `time`; not looked at of a circuit
+  Expression formula;     ///< of `time`
   TimeSum sum;            ///< not looked at of what is smooth
-  bool is_truth = false;  ///< a circuit of nothing but 0 and 1
+  bool turns = false;     ///< whether there is a sine in it, or a comparison
+  bool is_truth = false;  ///< of nothing but 0 and 1
 };
 
 /// There is no circuit for it.
@@ -105,8 +107,9 @@ class Reader {
   std::optional<TimeCircuit> read(const Expression& formula) {
     try {
       const Part whole = part_of(formula);
-      if (whole.is == Is::smooth) return std::nullopt;
+      if (whole.is == Is::smooth || is_constant(whole)) return std::nullopt;
       TimeCircuit circuit = used(whole.sum);
+      circuit.turns = whole.turns;
       if (!draw(circuit)) return std::nullopt;
       return circuit;
     } catch (const NoCircuit&) {
@@ -121,40 +124,55 @@ class Reader {
 
   Part part_of(const Expression& e) {
     if (e.kind == Kind::name && e.name == "time")
-      return {Is::linear, e, {0, {{1, signal({TimeSignal::Kind::clock, 0, 0, {}, {}, {}, {}})}}}, false};
+      return {Is::linear, e, one(signal({TimeSignal::Kind::clock, 0, 0, 0, {}, {}, {}}))};
     std::vector<Part> operands;
     operands.reserve(e.operands.size());
     for (const Expression& operand : e.operands) operands.push_back(part_of(operand));
-    const auto most = std::max_element(operands.begin(), operands.end(),
-                                       [](const Part& a, const Part& b) { return a.is < b.is; });
-    if (operands.empty() || most->is == Is::constant)
-      return {Is::constant, e, {text::evaluate(e), {}}, false};
+    if (std::all_of(operands.begin(), operands.end(), is_constant)) {
+      const double value = text::evaluate(with_values(e, operands));
+      return {Is::constant, number(value), {value, {}}, false, value == 0 || value == 1};
+    }
+    Part part = part_of(e, operands);
+    std::erase_if(part.sum.terms, [](const TimeSum::Term& term) { return term.weight == 0; });
+    if (part.is != Is::smooth && part.sum.terms.empty())
+      return {Is::constant, number(part.sum.constant), part.sum, false, part.is_truth};
+    part.formula = e;
+    for (const Part& operand : operands) part.turns = part.turns || operand.turns;
+    return part;
+  }
+
+  /// The expression with the values of its operands, which are constants.
+  static Expression with_values(Expression e, const std::vector<Part>& operands) {
+    for (std::size_t k = 0; k < operands.size(); ++k) e.operands[k] = number(operands[k].sum.constant);
+    return e;
+  }
+
+  Part part_of(const Expression& e, const std::vector<Part>& operands) {
     switch (e.kind) {
       case Kind::negate:
-        return weighted(e, operands[0], -1);
+        return weighted(operands[0], -1);
       case Kind::add:
-        return added(e, operands[0], operands[1], 1);
+        return added(operands[0], operands[1], 1);
       case Kind::subtract:
-        return added(e, operands[0], operands[1], -1);
+        return added(operands[0], operands[1], -1);
       case Kind::multiply:
-        return multiplied(e, operands[0], operands[1]);
+        return multiplied(operands[0], operands[1]);
       case Kind::divide:
-        return divided(e, operands[0], operands[1]);
+        return divided(operands[0], operands[1]);
       case Kind::power:
-        return power(e, operands[0], operands[1]);
+        return power(operands[0], operands[1]);
       case Kind::less:
       case Kind::less_equal:
-        return compared(added(e, operands[1], operands[0], -1));
+        return compared(difference(operands[1], operands[0]));
       case Kind::greater:
       case Kind::greater_equal:
-        return compared(added(e, operands[0], operands[1], -1));
+        return compared(difference(operands[0], operands[1]));
       case Kind::logical_and:
-        return logical(operands[0], operands[1], -1.5);
+        return both(operands[0], operands[1]);
       case Kind::logical_or:
-        return logical(operands[0], operands[1], -0.5);
+        return negated(both(negated(operands[0]), negated(operands[1])));
       case Kind::logical_not:
-        if (!operands[0].is_truth) throw NoCircuit{};
-        return {Is::circuit, {}, sum_of({1, {}}, scaled(operands[0].sum, -1)), true};
+        return negated(operands[0]);
       case Kind::call:
         return called(e, operands);
       case Kind::equal:
@@ -167,68 +185,127 @@ class Reader {
   }
 
   static bool is_constant(const Part& part) { return part.is == Is::constant; }
+  static Part smooth() { return {Is::smooth, {}, {}}; }
+  static Part circuit(TimeSum sum, bool turns) { return {Is::circuit, {}, std::move(sum), turns}; }
 
-  Part weighted(const Expression& e, const Part& part, double factor) {
-    if (part.is == Is::smooth) return {Is::smooth, e, {}, false};
-    return {part.is, e, scaled(part.sum, factor), false};
+  static Part weighted(const Part& part, double factor) {
+    if (part.is == Is::smooth) return smooth();
+    return {part.is, {}, scaled(part.sum, factor)};
   }
 
-  Part added(const Expression& e, const Part& a, const Part& b, double sign) {
+  Part added(const Part& a, const Part& b, double sign) {
     const Is is = std::max(a.is, b.is);
-    if (is == Is::smooth) return {is, e, {}, false};
-    return {is, e, sum_of(sum_in(a), scaled(sum_in(b), sign)), false};
+    if (is == Is::smooth) return smooth();
+    return {is, {}, sum_of(sum_in(a), scaled(sum_in(b), sign))};
   }
 
-  Part multiplied(const Expression& e, const Part& a, const Part& b) {
-    if (is_constant(a)) return weighted(e, b, a.sum.constant);
-    if (is_constant(b)) return weighted(e, a, b.sum.constant);
+  TimeSum difference(const Part& a, const Part& b) { return sum_of(sum_in(a), scaled(sum_in(b), -1)); }
+
+  Part multiplied(const Part& a, const Part& b) {
+    if (is_constant(a)) return weighted(b, a.sum.constant);
+    if (is_constant(b)) return weighted(a, b.sum.constant);
     const Is is = std::max(a.is, b.is);
-    if (is == Is::smooth) return {is, e, {}, false};
-    return {std::max(is, Is::polynomial), e, product(sum_in(a), sum_in(b)).sum, false};
+    if (is == Is::smooth) return smooth();
+    return {std::max(is, Is::polynomial), {}, product(sum_in(a), sum_in(b))};
   }
 
-  Part divided(const Expression& e, const Part& a, const Part& b) {
-    if (is_constant(b)) return weighted(e, a, 1 / b.sum.constant);
-    if (std::max(a.is, b.is) < Is::circuit) return {Is::smooth, e, {}, false};
-    if (is_constant(a) || b.is < Is::circuit) {
-      // A smooth divisor is one signal with its reciprocal.
-      const Expression one = number(is_constant(a) ? a.sum.constant : 1);
-      const Part reciprocal = b.is < Is::circuit
-                                  ? Part{Is::smooth, joined(Kind::divide, one, b.formula), {}, false}
-                                  : function_of(joined(Kind::divide, one, named(kArgument)), b);
-      return is_constant(a) ? reciprocal : product(sum_in(a), sum_in(reciprocal));
-    }
-    return product(sum_in(a), function_of(joined(Kind::divide, number(1), named(kArgument)), b).sum);
+  Part divided(const Part& a, const Part& b) {
+    if (is_constant(b)) return weighted(a, 1 / b.sum.constant);
+    if (std::max(a.is, b.is) < Is::circuit) return smooth();
+    Part reciprocal = function_of(joined(Kind::divide, number(1), named(kArgument)), b);
+    reciprocal.formula = joined(Kind::divide, number(1), b.formula);
+    return multiplied(a, reciprocal);
   }
 
-  Part power(const Expression& e, const Part& base, const Part& exponent) {
+  Part power(const Part& base, const Part& exponent) {
     const Is is = std::max(base.is, exponent.is);
-    if (is == Is::smooth) return {is, e, {}, false};
+    if (is == Is::smooth) return smooth();
     if (!is_constant(exponent)) {
-      if (is < Is::circuit) return {Is::smooth, e, {}, false};
+      if (is < Is::circuit) return smooth();
       throw NoCircuit{};
     }
     const double n = exponent.sum.constant;
     if (n == 1) return base;
     constexpr int kMostFactors = 4;
     if (n == 2 || n == 3 || n == kMostFactors) {
-      TimeSum factors = product(base.sum, base.sum).sum;
-      if (n > 2) factors = product(factors, n == 3 ? base.sum : factors).sum;
-      return {std::max(is, Is::polynomial), e, std::move(factors), false};
+      TimeSum factors = product(base.sum, base.sum);
+      if (n > 2) factors = product(factors, n == 3 ? base.sum : factors);
+      return {std::max(is, Is::polynomial), {}, std::move(factors)};
     }
-    if (base.is < Is::circuit) return {Is::smooth, e, {}, false};
     return function_of(joined(Kind::power, named(kArgument), number(n)), base);
   }
 
-  /// 1 where a part is above 0, else 0.
-  Part compared(const Part& part) {
-    return {
-        Is::circuit, {}, one(signal({TimeSignal::Kind::comparison, 0, 0, sum_in(part), {}, {}, {}})), true};
+  /// 1 where a sum is above 0, else 0; a constant where it is so, or not, all the time.
+  Part compared(const TimeSum& sum) {
+    if (sum.terms.size() == 1 && signals_[sum.terms.front().signal].kind == TimeSignal::Kind::clock) {
+      const double turn = -sum.constant / sum.terms.front().weight;
+      if (turn <= 0 || turn >= until_) {
+        const double value = sum.constant + sum.terms.front().weight * until_ / 2 > 0 ? 1 : 0;
+        return {Is::constant, number(value), {value, {}}, false, true};
+      }
+    }
+    Part part = circuit(one(signal({TimeSignal::Kind::comparison, 0, 0, 0, sum, {}, {}})), true);
+    part.is_truth = true;
+    return part;
   }
 
-  Part logical(const Part& a, const Part& b, double threshold) {
+  static Part negated(const Part& truth) {
+    if (!truth.is_truth) throw NoCircuit{};
+    Part part = truth;
+    part.sum = sum_of({1, {}}, scaled(truth.sum, -1));
+    return part;
+  }
+
+  Part both(const Part& a, const Part& b) {
     if (!a.is_truth || !b.is_truth) throw NoCircuit{};
-    return compared({Is::circuit, {}, sum_of(sum_of(a.sum, b.sum), {threshold, {}}), false});
+    if (is_constant(a)) return a.sum.constant == 0 ? a : b;
+    if (is_constant(b)) return b.sum.constant == 0 ? b : a;
+    if (const auto turns = turns_of(a.sum, b.sum)) {
+      // What is true of the two between their turns says what of them is enough.
+      const auto value = [&](const TimeSum& truth, double t) {
+        double total = truth.constant;
+        for (const TimeSum::Term& term : truth.terms) {
+          const TimeSum& compared = signals_[term.signal].a;
+          if (compared.constant + compared.terms.front().weight * t > 0) total += term.weight;
+        }
+        return total > 0.5;
+      };
+      bool one_alone[2] = {false, false}, never = true, none = false;
+      for (std::size_t k = 1; k < turns->size(); ++k) {
+        const double t = ((*turns)[k - 1] + (*turns)[k]) / 2;
+        const bool of_a = value(a.sum, t), of_b = value(b.sum, t);
+        one_alone[0] = one_alone[0] || (of_a && !of_b);
+        one_alone[1] = one_alone[1] || (of_b && !of_a);
+        never = never && !(of_a && of_b);
+        none = none || (!of_a && !of_b);
+      }
+      if (never) return {Is::constant, number(0), {0, {}}, false, true};
+      if (!one_alone[0]) return a;
+      if (!one_alone[1]) return b;
+      if (!none) {  // one of them at least
+        Part part = circuit(sum_of(sum_of(a.sum, b.sum), {-1, {}}), true);
+        part.is_truth = true;
+        return part;
+      }
+    }
+    return compared(sum_of(sum_of(a.sum, b.sum), {-1.5, {}}));
+  }
+
+  /// When comparisons of the clock turn, with the beginning and the end of the run; nothing where there is
+  /// another signal among them.
+  std::optional<std::vector<double>> turns_of(const TimeSum& a, const TimeSum& b) const {
+    std::vector<double> turns{0, until_};
+    for (const TimeSum* const sum : {&a, &b}) {
+      for (const TimeSum::Term& term : sum->terms) {
+        const TimeSignal& signal = signals_[term.signal];
+        const bool of_clock = signal.kind == TimeSignal::Kind::comparison && signal.a.terms.size() == 1 &&
+                              signals_[signal.a.terms.front().signal].kind == TimeSignal::Kind::clock;
+        if (!of_clock) return std::nullopt;
+        turns.push_back(-signal.a.constant / signal.a.terms.front().weight);
+      }
+    }
+    std::sort(turns.begin(), turns.end());
+    return turns;
   }
 
   Part called(const Expression& e, const std::vector<Part>& operands) {
@@ -243,10 +320,10 @@ class Reader {
         if (first.is == Is::linear) return exponential(first.sum);
         break;
       case Function::step:
-        return compared(first);
+        return compared(sum_in(first));
       case Function::sign: {
-        const Part above = compared(first);
-        return {Is::circuit, {}, sum_of({-1, {}}, scaled(above.sum, 2)), false};
+        const Part above = compared(sum_in(first));
+        return {above.is, {}, sum_of({-1, {}}, scaled(above.sum, 2)), above.turns};
       }
       case Function::if_:
         return chosen(operands);
@@ -257,70 +334,121 @@ class Reader {
       default:
         break;
     }
-    const bool has_circuit = std::any_of(operands.begin(), operands.end(),
-                                         [](const Part& part) { return part.is == Is::circuit; });
-    if (!has_circuit) return {Is::smooth, e, {}, false};
-    if (std::count_if(operands.begin(), operands.end(), varies) > 1) throw NoCircuit{};
-    const auto k = std::find_if(operands.begin(), operands.end(), varies) - operands.begin();
+    const auto one_that_varies = std::find_if(operands.begin(), operands.end(), varies);
+    const bool several = std::count_if(operands.begin(), operands.end(), varies) > 1;
+    if (several && !is_smooth(operands)) throw NoCircuit{};
+    if (several) return smooth();
     Expression of_one = e;
-    of_one.operands[static_cast<std::size_t>(k)] = named(kArgument);
-    return function_of(std::move(of_one), operands[static_cast<std::size_t>(k)]);
+    of_one.operands[static_cast<std::size_t>(one_that_varies - operands.begin())] = named(kArgument);
+    return function_of(std::move(of_one), *one_that_varies);
+  }
+
+  /// Whether a function of these is no more than a smooth function of the time.
+  static bool is_smooth(const std::vector<Part>& parts) {
+    return std::all_of(parts.begin(), parts.end(),
+                       [](const Part& part) { return part.is < Is::circuit || !part.turns; });
   }
 
   Part chosen(const std::vector<Part>& operands) {
     if (!operands[0].is_truth) throw NoCircuit{};
     const Part &a = operands[1], &b = operands[2];
+    if (is_constant(operands[0])) return operands[0].sum.constant == 0 ? b : a;
     if (is_constant(a) && is_constant(b))
-      return {
-          Is::circuit, {}, sum_of(scaled(operands[0].sum, a.sum.constant - b.sum.constant), b.sum), false};
+      return circuit(sum_of(scaled(operands[0].sum, a.sum.constant - b.sum.constant), b.sum), true);
     const TimeSum otherwise = sum_in(b);
     const TimeSum change = sum_of(sum_in(a), scaled(otherwise, -1));
-    return {Is::circuit, {}, sum_of(product(operands[0].sum, change).sum, otherwise), false};
+    return circuit(sum_of(product(operands[0].sum, change), otherwise), true);
   }
 
   /// max(a, b) = a + max(b − a, 0), min(a, b) = a + min(b − a, 0).
   Part extreme(const Expression& e, const std::vector<Part>& operands) {
-    if (std::all_of(operands.begin(), operands.end(), [](const Part& p) { return p.is < Is::circuit; }))
-      return {Is::smooth, e, {}, false};
+    if (is_smooth(operands)) return smooth();
     Expression beyond = e;
     beyond.operands = {named(kArgument), number(0)};
     TimeSum found = sum_in(operands.front());
     for (std::size_t k = 1; k < operands.size(); ++k) {
-      const Part difference{Is::circuit, {}, sum_of(sum_in(operands[k]), scaled(found, -1)), false};
-      found = sum_of(found, function_of(beyond, difference).sum);
+      const Part above = circuit(sum_of(sum_in(operands[k]), scaled(found, -1)), true);
+      found = sum_of(found, function_of(beyond, above).sum);
     }
-    return {Is::circuit, {}, found, false};
+    return circuit(found, true);
   }
 
   /// sin(rate·t + constant), or the cosine.
   Part sine(const TimeSum& angle, bool is_cosine) {
-    double rate = angle.terms.front().weight;
-    double phase = angle.constant + (is_cosine ? std::numbers::pi / 2 : 0);
-    if (rate < 0) {
-      rate = -rate;
-      phase = std::numbers::pi - phase;
-    }
+    const double rate = angle.terms.front().weight;
+    const double phase = angle.constant + (is_cosine ? std::numbers::pi / 2 : 0);
+    return circuit(rate < 0 ? sine(-rate, std::numbers::pi - phase, 0) : sine(rate, phase, 0), true);
+  }
+
+  /// exp(growth·t) sin(rate·t + phase) of the one signal of this rate and growth, and the one ahead of it by
+  /// a quarter.
+  TimeSum sine(double rate, double phase, double growth) {
+    constexpr double kSame = 1e-12;
+    const auto found = std::find_if(signals_.begin(), signals_.end(), [&](const TimeSignal& signal) {
+      return signal.kind == TimeSignal::Kind::sine && signal.growth == growth &&
+             std::abs(signal.rate - rate) <= kSame * rate;
+    });
     phase = std::remainder(phase, 2 * std::numbers::pi);
-    return {Is::circuit, {}, one(signal({TimeSignal::Kind::sine, rate, phase, {}, {}, {}, {}})), false};
+    if (found == signals_.end())
+      return one(signal({TimeSignal::Kind::sine, rate, phase, growth, {}, {}, {}}));
+    TimeSignal quarter = *found;
+    quarter.phase = std::remainder(found->phase + std::numbers::pi / 2, 2 * std::numbers::pi);
+    const auto first = static_cast<std::size_t>(found - signals_.begin());
+    const double ahead = phase - found->phase;
+    TimeSum sum;
+    if (std::abs(std::cos(ahead)) > kSame) sum.terms.push_back({std::cos(ahead), first});
+    if (std::abs(std::sin(ahead)) > kSame) sum.terms.push_back({std::sin(ahead), signal(std::move(quarter))});
+    return sum;
   }
 
   Part exponential(const TimeSum& exponent) {
-    const double rate = exponent.terms.front().weight;
-    return {Is::circuit,
-            {},
-            one(signal({TimeSignal::Kind::exponential, rate, exponent.constant, {}, {}, {}, {}})),
-            false};
+    const double growth = exponent.terms.front().weight;
+    const double at_start = std::exp(exponent.constant);
+    if (at_start == 0 || !std::isfinite(at_start)) return smooth();
+    return circuit(scaled(exponential(growth), at_start), false);
   }
 
-  Part product(TimeSum a, TimeSum b) {
-    return {Is::circuit,
-            {},
-            one(signal({TimeSignal::Kind::product, 0, 0, std::move(a), std::move(b), {}, {}})),
-            false};
+  TimeSum exponential(double growth) {
+    if (growth == 0) return {1, {}};
+    return one(signal({TimeSignal::Kind::exponential, 0, 0, growth, {}, {}, {}}));
+  }
+
+  /// a·b with the weights of single signals before it. An exponential makes one sine, or exponential, of
+  /// another.
+  TimeSum product(TimeSum a, TimeSum b) {
+    double factor = 1;
+    for (TimeSum* const sum : {&a, &b}) {
+      if (sum->terms.empty()) return scaled(sum == &a ? b : a, sum->constant * factor);
+      if (sum->constant != 0 || sum->terms.size() > 1) continue;
+      factor *= sum->terms.front().weight;
+      sum->terms.front().weight = 1;
+    }
+    const auto decays = [&](const TimeSum& sum) {
+      return sum.constant == 0 && sum.terms.size() == 1 &&
+             signals_[sum.terms.front().signal].kind == TimeSignal::Kind::exponential;
+    };
+    if (!decays(a)) std::swap(a, b);
+    const bool oscillates = std::all_of(b.terms.begin(), b.terms.end(), [&](const TimeSum::Term& term) {
+      const TimeSignal::Kind kind = signals_[term.signal].kind;
+      return kind == TimeSignal::Kind::exponential || kind == TimeSignal::Kind::sine;
+    });
+    if (decays(a) && oscillates) {
+      const double growth = signals_[a.terms.front().signal].growth;
+      TimeSum sum = scaled(a, factor * b.constant);
+      for (const TimeSum::Term& term : b.terms) {
+        const TimeSignal of = signals_[term.signal];
+        const TimeSum both = of.kind == TimeSignal::Kind::sine ? sine(of.rate, of.phase, of.growth + growth)
+                                                               : exponential(of.growth + growth);
+        sum = sum_of(sum, scaled(both, factor * term.weight));
+      }
+      return sum;
+    }
+    return scaled(one(signal({TimeSignal::Kind::product, 0, 0, 0, std::move(a), std::move(b), {}})), factor);
   }
 
   /// A function of the argument at a part; of a function of one signal, a function of that signal.
   Part function_of(Expression function, const Part& part) {
+    if (part.is < Is::circuit || !part.turns) return smooth();
     TimeSum argument = part.sum;
     if (argument.terms.size() == 1) {
       const auto [weight, inner] = argument.terms.front();
@@ -332,10 +460,9 @@ class Reader {
         argument = signals_[inner].a;
       }
     }
-    return {Is::circuit,
-            {},
-            one(signal({TimeSignal::Kind::function, 0, 0, std::move(argument), {}, std::move(function), {}})),
-            false};
+    return circuit(
+        one(signal({TimeSignal::Kind::function, 0, 0, 0, std::move(argument), {}, std::move(function)})),
+        true);
   }
 
   /// A part as a sum of signals: what is smooth is a function of the clock.
@@ -343,7 +470,7 @@ class Reader {
     if (part.is != Is::smooth) return part.sum;
     const TimeSum clock = part_of(named("time")).sum;
     return one(signal(
-        {TimeSignal::Kind::function, 0, 0, clock, {}, with(part.formula, "time", named(kArgument)), {}}));
+        {TimeSignal::Kind::function, 0, 0, 0, clock, {}, with(part.formula, "time", named(kArgument))}));
   }
 
   /// The circuit of the signals that a sum is made of.
@@ -377,23 +504,24 @@ class Reader {
 
   static TimeSum one(std::size_t signal) { return {0, {{1, signal}}}; }
 
+  /// The signal, which is made once.
   std::size_t signal(TimeSignal made) {
-    if (made.kind == TimeSignal::Kind::clock) {
-      const auto clock = std::find_if(signals_.begin(), signals_.end(),
-                                      [](const TimeSignal& s) { return s.kind == TimeSignal::Kind::clock; });
-      if (clock != signals_.end()) return static_cast<std::size_t>(clock - signals_.begin());
-    }
+    const auto same = std::find_if(signals_.begin(), signals_.end(), [&](const TimeSignal& s) {
+      const bool crossed = made.kind == TimeSignal::Kind::product && s.a == made.b && s.b == made.a;
+      return s.kind == made.kind && s.rate == made.rate && s.phase == made.phase && s.growth == made.growth &&
+             ((s.a == made.a && s.b == made.b) || crossed) && s.function == made.function;
+    });
+    if (same != signals_.end()) return static_cast<std::size_t>(same - signals_.begin());
     signals_.push_back(std::move(made));
     return signals_.size() - 1;
   }
 
-  /// What the signals are over the run. False where one is not finite, or too large for what becomes of it.
+  /// What the signals are over the run, and how much larger than what becomes of them. False where one is not
+  /// finite, or is over too soon to be looked at.
   bool draw(TimeCircuit& circuit) const {
-    /// Of what becomes of it: a larger one leaves little of a machine's unit to that.
-    constexpr double kMostOf = 100;
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const std::optional<int> count = moments(circuit);
-    if (!count) return false;
+    const std::vector<double> moments = moments_of(circuit);
+    if (moments.empty()) return false;
     struct Peaks {
       double a = 0, b = 0, terms = 0, own = 0;
     };
@@ -412,8 +540,7 @@ class Reader {
       }
       return total;
     };
-    for (int k = 0; k <= *count; ++k) {
-      const double t = until_ * k / *count;
+    for (const double t : moments) {
       for (std::size_t i = 0; i < n; ++i) {
         TimeSignal& signal = circuit.signals[i];
         const double a = value(signal.a, peaks[i].terms), b = value(signal.b, peaks[i].terms);
@@ -426,29 +553,46 @@ class Reader {
       }
       grow(whole.own, value(circuit.out, whole.terms));
     }
+    const auto exceed = [&](double large, double small) {
+      if (large > small) circuit.excess = std::max(circuit.excess, large / small);
+    };
+    exceed(whole.terms, whole.own);
     for (std::size_t i = 0; i < n; ++i) {
-      const TimeSignal::Kind kind = circuit.signals[i].kind;
+      const TimeSignal& signal = circuit.signals[i];
       const Peaks& seen = peaks[i];
-      if (kind == TimeSignal::Kind::product && seen.a * seen.b > kMostOf * seen.own) return false;
-      const double span = circuit.signals[i].range.high - circuit.signals[i].range.low;
-      if (kind == TimeSignal::Kind::function && seen.terms > kMostOf * span) return false;
+      if (signal.kind == TimeSignal::Kind::product) exceed(seen.a * seen.b, seen.own);
+      if (signal.kind == TimeSignal::Kind::function) exceed(seen.terms, signal.range.high - signal.range.low);
+      exceed(std::exp(signal.growth * until_), 1);
     }
-    return whole.terms <= kMostOf * whole.own;
+    return true;
   }
 
-  /// At how many the signals are looked at: the extremes of an argument of a function are met to 1e-4.
-  /// Nothing where these would be too many.
-  std::optional<int> moments(const TimeCircuit& circuit) const {
+  /// Where the signals are looked at: the extremes of an argument of a function are met to 1e-4, and every
+  /// pulse between two turns of comparisons with the clock. Nothing where these would be too many.
+  std::vector<double> moments_of(const TimeCircuit& circuit) const {
     constexpr double kLeast = 4096, kMost = 1e6, kOfRadian = 40;
     double radians = 0;
     bool has_function = false;
+    std::vector<double> turns{0, until_};
     for (const TimeSignal& signal : circuit.signals) {
-      if (signal.kind == TimeSignal::Kind::sine) radians = std::max(radians, signal.rate * until_);
+      radians = std::max({radians, signal.rate * until_, std::abs(signal.growth) * until_});
       has_function = has_function || signal.kind == TimeSignal::Kind::function;
+      const bool of_clock = signal.kind == TimeSignal::Kind::comparison && signal.a.terms.size() == 1 &&
+                            circuit.signals[signal.a.terms.front().signal].kind == TimeSignal::Kind::clock;
+      if (of_clock) turns.push_back(-signal.a.constant / signal.a.terms.front().weight);
     }
     const double wanted = std::max(kLeast, kOfRadian * radians);
-    if (wanted <= kMost) return static_cast<int>(wanted);
-    return has_function ? std::nullopt : std::optional(static_cast<int>(kLeast));
+    if (wanted > kMost && has_function) return {};
+    const int count = static_cast<int>(wanted > kMost ? kLeast : wanted);
+    std::vector<double> moments;
+    for (int k = 0; k <= count; ++k) moments.push_back(until_ * k / count);
+    std::sort(turns.begin(), turns.end());
+    constexpr int kOfPulse = 67;  // no whole part of a period that a pulse is likely to have
+    for (std::size_t n = 1; n < turns.size(); ++n) {
+      for (int k = 1; k < kOfPulse; ++k)
+        moments.push_back(turns[n - 1] + (turns[n] - turns[n - 1]) * k / kOfPulse);
+    }
+    return moments;
   }
 
   static double value_of(const TimeSignal& signal, double t, double a, double b) {
@@ -456,9 +600,9 @@ class Reader {
       case TimeSignal::Kind::clock:
         return t;
       case TimeSignal::Kind::sine:
-        return std::sin(signal.rate * t + signal.phase);
+        return std::exp(signal.growth * t) * std::sin(signal.rate * t + signal.phase);
       case TimeSignal::Kind::exponential:
-        return std::exp(signal.rate * t + signal.phase);
+        return std::exp(signal.growth * t);
       case TimeSignal::Kind::product:
         return a * b;
       case TimeSignal::Kind::comparison:
