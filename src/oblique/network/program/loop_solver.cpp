@@ -267,7 +267,9 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
 
 LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const Instruction> body,
                                           double* slots) {
-  constexpr double kLongWay = 0.05;  // of 1 + |z|: a way along which another branch may lie
+  // A way along which another branch may lie: of 1 + |z| where there was no solution before, else of a
+  // machine unit, since branches may be as near to each other far from zero.
+  constexpr double kLongWay = 0.05;
   constexpr double kNoWay =
       1e-6;  // of 1 + |z|: the guess is this solution, to the digits that it is written with
   read(loop, slots, origin_);
@@ -283,7 +285,7 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
   const auto is_on_branch =
       [&](const Search& found) {  // at a root of even order the sign is that of rounding
         return (found.even_order || matrix_.determinant_sign() == branch_) &&
-               (way(loop, slots) < kLongWay || keeps_sign(loop, body, slots));
+               (longest_change(loop, slots) < kLongWay || keeps_sign(loop, body, slots));
       };
   Search search = newton(loop, body, slots);
   const bool straight = search.failure == LoopFailure::none && !search.damped;
@@ -332,14 +334,24 @@ double LoopWorkspace::way(const LoopCode& loop, const double* slots) const {
   return longest;
 }
 
+/// The largest change of an unknown since the search began.
+double LoopWorkspace::longest_change(const LoopCode& loop, const double* slots) const {
+  double longest = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    longest = std::max(longest, std::abs(slots[loop.unknown_slots[i]] - origin_[eigen_index(i)]));
+  return longest;
+}
+
 /// Whether the determinant of dg/dz has the sign of the branch along the straight line from where the search
 /// began: between two branches that amplifiers hold there lies one that they do not.
 bool LoopWorkspace::keeps_sign(const LoopCode& loop, std::span<const Instruction> body, double* slots) {
-  constexpr int kParts = 4;
+  // No simple fractions: a leap over some periods of a sine would show its one side at all of them.
+  constexpr int kPlaces = 8;
+  constexpr double kGolden = 0.6180339887498949;
   read(loop, slots, target_);
   bool keeps = true;
-  for (int part = 1; part < kParts && keeps; ++part) {
-    start_ = origin_ + (target_ - origin_) * part / kParts;
+  for (int place = 1; place <= kPlaces && keeps; ++place) {
+    start_ = origin_ + (target_ - origin_) * std::fmod(place * kGolden, 1);
     write(loop, slots, start_);
     run_tape(body, slots);
     keeps = matrix_.factor(loop, slots) && matrix_.determinant_sign() == branch_;

@@ -68,6 +68,7 @@ class LoopWorkspace {
   bool keeps_sign(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   bool relax(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   double way(const LoopCode& loop, const double* slots) const;
+  double longest_change(const LoopCode& loop, const double* slots) const;
   double move(const LoopCode& loop, double* slots, double fraction) const;
   void read(const LoopCode& loop, const double* slots, Eigen::VectorXd& unknowns) const;
   void write(const LoopCode& loop, double* slots, const Eigen::VectorXd& unknowns) const;

@@ -99,11 +99,17 @@ void EventActions::end(double t) {
 }
 
 /// Whether the condition of an event that came at this instant holds because what it set leads back to it: it
-/// hangs on a switch whose event function is at zero, and does not stay there. (Once states have jumped, at
-/// zero to rounding: what has only just passed it, and lies within its errors, the jump has not led there.)
+/// hangs on a switch whose event function is at zero, and neither stays there nor leaves that side (a ball
+/// that bounces where something else has its event). (Once states have jumped, at zero to rounding: what has
+/// only just passed it, and lies within its errors, the jump has not led there.)
 bool EventActions::comes_at_once(std::size_t event, double t, std::span<const double> x) {
   if (!came_[event]) return false;
-  std::vector<double> others(event_functions_.size());
+  std::vector<double> others(event_functions_.size()), rates(event_functions_.size());
+  if (const auto here = program_.event_functions(t, x.data(), others.data(), workspace_)) {
+    std::vector<double> derivatives(program_.n_states());
+    here->derivatives(derivatives.data());
+    here->event_function_rates(derivatives.data(), rates.data());
+  }
   bool hangs = false;
   for (std::size_t s = 0; s < event_functions_.size() && !hangs; ++s) {
     if (event_functions_.is_known(s) || settling_.stays(s) || slide_.rests(s) ||
@@ -112,6 +118,7 @@ bool EventActions::comes_at_once(std::size_t event, double t, std::span<const do
       continue;
     const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
     const double position = workspace_.discrete_state(discrete_state);
+    if (position == 1 ? rates[s] < 0 : rates[s] > 0) continue;  // on its way to the other side
     workspace_.set_discrete_state(discrete_state, 1 - position);
     const auto there = program_.event_functions(t, x.data(), others.data(), workspace_);
     hangs = there && !there->condition(event);

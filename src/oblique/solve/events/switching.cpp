@@ -324,6 +324,25 @@ bool Switching::derivatives(double t, const double* x, double* dxdt) {
   return true;
 }
 
+void Switching::mark_held(double t, const double* x, std::vector<bool>& held) {
+  if (!slide_.active() || slide_.units() == marked_) return;
+  std::vector<double> values(program_.switches().size()), still(values.size());
+  const auto here = program_.event_functions(t, x, values.data(), workspace_);
+  if (!here) return;
+  marked_ = slide_.units();
+  std::vector<double> rates(program_.n_states(), 0.0);
+  here->event_function_rates(rates.data(), still.data());
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    rates[i] = 1;
+    here->event_function_rates(rates.data(), values.data());
+    rates[i] = 0;
+    for (const std::uint32_t unit : marked_) {
+      const std::uint32_t s = program_.switch_structure().members[unit].front();
+      if (values[s] != still[s]) held[i] = true;
+    }
+  }
+}
+
 bool Switching::jacobian(double t, const double* x, double* values) {
   if (slide_.active()) return slide_.jacobian(t, x, values);
   const std::span<double> entries(values, program_.jacobian_pattern().entries());

@@ -122,6 +122,8 @@ class Switching {
   void end(double t) { actions_.end(t); }
 
   bool slides() const { return slide_.active(); }
+  /// Marks the states that the event functions read of what slides at (t, x).
+  void mark_held(double t, const double* x, std::vector<bool>& held);
   const network::Workspace& workspace() const { return workspace_; }
 
   const EventLog& log() const { return log_; }
@@ -168,7 +170,8 @@ class Switching {
   FaintTurns faint_turns_;
   LoopJumps loop_jumps_;
   double begin_ = -std::numeric_limits<double>::infinity(), end_ = std::numeric_limits<double>::infinity();
-  int hops_ = 0;  ///< of tables, one after the other at one instant
+  std::vector<std::uint32_t> marked_;  ///< the units of the slide whose states were marked last
+  int hops_ = 0;                       ///< of tables, one after the other at one instant
 };
 
 }  // namespace oblique::solve

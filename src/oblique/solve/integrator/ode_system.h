@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include <oblique/network/program/program.h>
 
@@ -19,6 +20,8 @@ class OdeSystem {
   virtual bool jacobian(double t, const double* x, double* values) = 0;
   /// Whether `jacobian` is df/dx to rounding, and has all its entries; else it is good for Newton's method.
   virtual bool is_jacobian_exact() const { return true; }
+  /// Marks the states that a slide at (t, x) may hold at zero: those that its event functions read.
+  virtual void mark_held(double /*t*/, const double* /*x*/, std::vector<bool>& /*held*/) const {}
   /// Whether f may depend on the time.
   virtual bool depends_on_time() const { return true; }
   /// Whether the solver is to end, also in the midst of a step.

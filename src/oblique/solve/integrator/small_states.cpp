@@ -48,7 +48,8 @@ SmallStates::SmallStates(OdeSystem& system, const SolverSettings& settings, doub
       sizes_(n_readings, 0),
       values_(n_readings),
       moved_(n_readings),
-      off_states_(system.size()) {}
+      off_states_(system.size()),
+      held_(system.size(), false) {}
 
 double SmallStates::tolerance_of(std::size_t i) const {
   return settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
@@ -60,7 +61,7 @@ bool SmallStates::is_small(std::size_t i) const {
 
 void SmallStates::advance(double t, std::span<const double> x) {
   for (std::size_t i = 0; i < x.size(); ++i) peaks_[i] = std::max(peaks_[i], std::abs(x[i]));
-  slides_ = slides_ || !system_.is_jacobian_exact();
+  system_.mark_held(t, x.data(), held_);
   if (steps_++ < next_look_) return;
   next_look_ = 2 * next_look_ + 1;
   look(t, x);
@@ -130,7 +131,7 @@ std::optional<std::size_t> SmallStates::reader_of(std::size_t state) const {
   for (std::size_t k = 0; k < sizes_.size(); ++k) {
     // An output that shows nothing larger is looked at beside its own size: but for what a slide may hold at
     // zero, and for what the errors of larger states leave where they cancel.
-    const bool shows_small = !slides_ && sizes_[k] > kStaysZero && sizes_[k] < kSmallUnit &&
+    const bool shows_small = !held_[state] && sizes_[k] > kStaysZero && sizes_[k] < kSmallUnit &&
                              peaks_[state] > left_by_others_[state];
     const double much = k >= n_relative_ ? kMuchOfEventFunction * sizes_[k]
                         : shows_small    ? kMuchOfSmallOutput * tolerance_ * sizes_[k]
@@ -142,13 +143,12 @@ std::optional<std::size_t> SmallStates::reader_of(std::size_t state) const {
 
 std::vector<SmallState> SmallStates::found() const {
   std::vector<SmallState> found;
-  const bool small_units =
-      n_relative_ > 0 && !slides_ &&
-      std::all_of(peaks_.begin(), peaks_.end(), [](double peak) { return peak < kSmallUnit; });
+  const bool small_units = n_relative_ > 0 && std::all_of(peaks_.begin(), peaks_.end(),
+                                                          [](double peak) { return peak < kSmallUnit; });
   for (std::size_t i = 0; i < peaks_.size(); ++i) {
     if (!is_small(i) || peaks_[i] <= kAboveRounding * noise_[i]) continue;
     const auto reader = reader_of(i);
-    if (reader || (small_units && peaks_[i] > kStaysZero))
+    if (reader || (small_units && !held_[i] && peaks_[i] > kStaysZero))
       found.push_back({i, peaks_[i], reader.value_or(0)});
   }
   return found;

@@ -26,8 +26,8 @@ struct SmallState {
 /// their units, and the event functions of switches beside their own size. States that are no more than the
 /// rounding of what they integrate are not told of: nothing would make them known. Where all states of a
 /// diagram are below 1e-4 it stands in small units (amperes of a nerve), and all above 1e-13 matter, as do
-/// those behind an output that stays between the two; but for slides, which hold states at zero to within
-/// errors. Not installed.
+/// those behind an output that stays between the two; but for what slides hold at zero to within errors. Not
+/// installed.
 class SmallStates {
  public:
   /// Gives `n_readings` values at (t, x), false where they have none; those from `n_relative` on matter
@@ -63,7 +63,7 @@ class SmallStates {
   std::vector<double> left_by_others_;  ///< what the relative errors of all states make of them
   std::vector<double> sizes_;           ///< of the readings
   std::vector<double> values_, moved_, off_states_;
-  bool slides_ = false;
+  std::vector<bool> held_;  ///< of each state: whether a slide may have held it at zero
   std::map<std::size_t, std::vector<double>>
       moves_;  ///< of each small state, by how much it moves the readings
   /// The first look is late: many a state begins at zero, and is small for some steps only.

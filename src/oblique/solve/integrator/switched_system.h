@@ -27,6 +27,9 @@ class SwitchedSystem final : public OdeSystem {
   /// In a slide the shares of its sides depend on the states and on the time, and their derivatives are not
   /// in the Jacobian.
   bool is_jacobian_exact() const override { return !switching_.slides(); }
+  void mark_held(double t, const double* x, std::vector<bool>& held) const override {
+    switching_.mark_held(t, x, held);
+  }
   bool depends_on_time() const override;
   bool is_to_end() const override { return interruption_.is_asked(); }
 
