@@ -12,9 +12,10 @@
 namespace oblique::solve {
 namespace {
 
-/// Whether every switch stands where its event function asks for it, or goes to.
+/// Whether every switch but those `left` stands where its event function asks for it, or goes to.
 bool agrees(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
-            const Thresholds& thresholds, double span, double t, std::span<const double> x) {
+            const Thresholds& thresholds, double span, const std::vector<std::uint32_t>& left, double t,
+            std::span<const double> x) {
   std::vector<double> event_functions(program.switches().size()), rates(event_functions.size()),
       derivatives(x.size());
   const auto here = program.event_functions(t, x.data(), event_functions.data(), workspace);
@@ -24,6 +25,7 @@ bool agrees(const network::Program& program, network::Workspace& workspace, cons
   const double fastest = fastest_of(derivatives, 0);
   for (std::size_t s = 0; s < event_functions.size(); ++s) {
     if (program.switches()[s].rate || slide.holds(s) || slide.follows(s)) continue;
+    if (std::find(left.begin(), left.end(), s) != left.end()) continue;
     const bool closed = workspace.discrete_state(program.switches()[s].discrete_state) == 1;
     const auto goes_there = [&](double towards) { return closed ? towards > 0 : towards < 0; };
     if (std::abs(event_functions[s]) <= thresholds[s]) {
@@ -69,8 +71,8 @@ std::optional<network::Evaluation> place_others(const network::Program& program,
 }
 
 Agreement choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
-                     const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
-                     std::span<const double> x) {
+                     const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless,
+                     const std::vector<std::uint32_t>& left, double t, std::span<const double> x) {
   constexpr std::size_t kMostTogether = 12;  // switches of which all combinations are tried
   const network::SwitchStructure& structure = program.switch_structure();
   for (std::size_t k = 0; k < restless.size(); ++k) {
@@ -90,6 +92,7 @@ Agreement choose_any(const network::Program& program, network::Workspace& worksp
     placed[restless[k]] = true;
     if (workspace.discrete_state(program.switches()[restless[k]].discrete_state) == 1) present |= 1U << k;
   }
+  for (const std::uint32_t s : left) placed[s] = true;
   std::vector<double> event_functions(program.switches().size()), chosen;
   Combination first = 0;
   for (const Combination sides : nearest_first(present, restless.size())) {
@@ -98,7 +101,7 @@ Agreement choose_any(const network::Program& program, network::Workspace& worksp
     for (std::size_t k = 0; k < restless.size(); ++k)
       workspace.set_discrete_state(program.switches()[restless[k]].discrete_state, has(sides, k) ? 1 : 0);
     if (!place_others(program, workspace, thresholds, placed, t, x, event_functions) ||
-        !agrees(program, workspace, slide, thresholds, span, t, x))
+        !agrees(program, workspace, slide, thresholds, span, left, t, x))
       continue;
     if (!chosen.empty()) {
       workspace.load_discrete_states(chosen);
@@ -136,7 +139,7 @@ std::optional<std::uint32_t> find_open(const network::Program& program, const ne
     network::Workspace trial = workspace;
     trial.set_discrete_state(made.discrete_state, 1 - workspace.discrete_state(made.discrete_state));
     if (place_others(program, trial, thresholds, placed, t, x, event_functions) &&
-        agrees(program, trial, slide, thresholds, span, t, x))
+        agrees(program, trial, slide, thresholds, span, {}, t, x))
       return s;
   }
   return std::nullopt;

@@ -30,10 +30,11 @@ struct Agreement {
 
 /// Tries all combinations of `restless` and of the switches that share their algebraic loops, the nearest to
 /// the present one first, until one agrees with itself at (t, x); nothing, and nothing changed, where none
-/// does, or they are too many. `span` is the length of the run [s].
+/// does, or they are too many. The switches `left` are left as they stand, and need not agree. `span` is the
+/// length of the run [s].
 Agreement choose_any(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
-                     const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless, double t,
-                     std::span<const double> x);
+                     const Thresholds& thresholds, double span, std::vector<std::uint32_t> restless,
+                     const std::vector<std::uint32_t>& left, double t, std::span<const double> x);
 
 /// The first switch with a jump that agrees with itself on its other side too, all others settled with it;
 /// nothing where there is none. (Of algebraic loops see OtherSolutions: those are left out.)

@@ -231,7 +231,6 @@ bool SwitchSettling::is_at_level(std::uint32_t unit) const {
 /// Lets the solution decide where the units go that lie on their switching surfaces, together with those that
 /// slide.
 void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
-  const network::SwitchStructure& structure = program_.switch_structure();
   for (const std::uint32_t unit : slide_.units()) {
     if (!has_unit(units, unit)) units.push_back(unit);
   }
@@ -246,11 +245,10 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
   std::vector<double> before;
   for (std::size_t s = 0; s < event_functions_.size(); ++s) before.push_back(position(s));
   event_functions_.weigh_errors();
-  if (!positions_.choose(units, preferred, may_stop, event_functions_.here(), t, x)) {
-    std::vector<std::uint32_t> members;
-    for (const std::uint32_t unit : units)
-      members.insert(members.end(), structure.members[unit].begin(), structure.members[unit].end());
-    if (units.size() > Positions::kMostUnits || !choose_restless(members, t, x))
+  if (!positions_.choose(units, preferred, may_stop, event_functions_.here(), t, x) &&
+      !choose_beside_slide(units, preferred, may_stop, t, x)) {
+    const std::vector<std::uint32_t> members = members_of(units);
+    if (units.size() > Positions::kMostUnits || !choose_restless(members, {}, t, x))
       throw no_position(members.front(), t);
   }
   note_choice(t, x);
@@ -261,11 +259,34 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
   }
 }
 
-/// Puts switches that go on turning over where they and all others agree, and tells where that is not the
-/// only way; false where there is none.
-bool SwitchSettling::choose_restless(const Units& switches, double t, std::span<const double> x) {
+std::vector<std::uint32_t> SwitchSettling::members_of(const Units& units) const {
+  std::vector<std::uint32_t> members;
+  for (const std::uint32_t unit : units) {
+    const auto& own = program_.switch_structure().members[unit];
+    members.insert(members.end(), own.begin(), own.end());
+  }
+  return members;
+}
+
+/// Where no positions of these units agree: puts those that did not slide where they agree (an amplifier that
+/// flips to its other limit), and lets the others slide on beside them. False where that is no way either.
+bool SwitchSettling::choose_beside_slide(const Units& units, const std::vector<double>& preferred,
+                                         const Units& may_stop, double t, std::span<const double> x) {
+  Units slid, others;
+  for (const std::uint32_t unit : units) (has_unit(slid_, unit) ? slid : others).push_back(unit);
+  if (slid.empty() || others.empty() || others.size() > Positions::kMostUnits) return false;
+  if (!choose_restless(members_of(others), members_of(slid), t, x)) return false;
+  event_functions_.evaluate(t, x, announced_);
+  event_functions_.weigh_errors();
+  return positions_.choose(slid, preferred, may_stop, event_functions_.here(), t, x);
+}
+
+/// Puts switches that go on turning over where they and all others but those `left` agree, and tells where
+/// that is not the only way; false where there is none.
+bool SwitchSettling::choose_restless(const Units& switches, const Units& left, double t,
+                                     std::span<const double> x) {
   const Agreement found =
-      choose_any(program_, workspace_, slide_, event_functions_.thresholds(), span_, switches, t, x);
+      choose_any(program_, workspace_, slide_, event_functions_.thresholds(), span_, switches, left, t, x);
   if (!found.open.empty()) log_.warn_of_choice(found.open, workspace_, t);
   return found.any;
 }
@@ -318,7 +339,7 @@ bool SwitchSettling::settle(double t, std::span<const double> x) {
       // These go on turning over: their event functions depend on their own positions.
       restless.insert(restless.end(), turned.begin(), turned.end());
       if (round <= 2 * most) continue;
-      if (!choose_restless(restless, t, x))
+      if (!choose_restless(restless, {}, t, x))
         throw no_position(*std::min_element(restless.begin(), restless.end()), t);
       event_functions_.evaluate(t, x, announced_);
       return true;

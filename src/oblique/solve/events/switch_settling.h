@@ -78,7 +78,10 @@ class SwitchSettling {
   void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
   bool is_at_level(std::uint32_t unit) const;
   void decide(Units units, double t, std::span<const double> x);
-  bool choose_restless(const Units& switches, double t, std::span<const double> x);
+  std::vector<std::uint32_t> members_of(const Units& units) const;
+  bool choose_beside_slide(const Units& units, const std::vector<double>& preferred, const Units& may_stop,
+                           double t, std::span<const double> x);
+  bool choose_restless(const Units& switches, const Units& left, double t, std::span<const double> x);
   void note_choice(double t, std::span<const double> x);
   SolveError no_position(std::uint32_t s, double t) const;
 
