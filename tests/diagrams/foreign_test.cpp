@@ -62,5 +62,43 @@ TEST_P(ForeignDiagram, GivesTheTruth) {
   }
 }
 
+/// Diagrams that were answered wrongly, or refused, where a relay slid beside them: what is small, what
+/// follows quickly, and what flips.
+std::vector<std::string> diagrams_beside_a_slide() {
+  std::vector<std::string> paths;
+  for (const char* const name :
+       {"half_wave_rectifier", "slope_by_a_fast_lag", "prandtl_ishlinskii", "oscillator_of_nanoamperes",
+        "traces_beside_a_unit", "eccles_jordan", "schmitt_by_feedback", "limiter_astable",
+        "fold_by_a_limiter", "limiter_with_positive_feedback"}) {
+    for (const std::string& path : foreign_diagrams()) {
+      if (std::filesystem::path(path).stem() == name) paths.push_back(path);
+    }
+  }
+  return paths;
+}
+
+class BesideASlide : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Diagrams, BesideASlide, ::testing::ValuesIn(diagrams_beside_a_slide()),
+                         foreign_name);
+
+// A relay that holds an integrator at zero from a third of the run on, wired to nothing else, changes
+// nothing.
+TEST_P(BesideASlide, GivesTheTruthAllTheSame) {
+  diagram::Diagram diagram = diagram::read_diagram(GetParam());
+  const diagram::Diagram beside = diagram::parse_diagram(
+      "format = \"oblique-diagram/1\"\n[blocks]\nidle_relay = { type = \"sign\", in = \"idle_state\" }\n"
+      "idle_state = { type = \"integrator\", in = \"-idle_relay\", initial = 0.3, rate = " +
+          std::to_string(1 / diagram.run.until) + " }\n",
+      "beside.toml");
+  ASSERT_FALSE(diagram.outputs.empty());
+  diagram.blocks.insert(diagram.blocks.begin(), beside.blocks.begin(), beside.blocks.end());
+  const diagram::FlatDiagram flat = diagram::flatten(diagram, foreign_blocks());
+  solve::RunOptions options = solve::options_of(diagram.run);
+  report::ask_for_expectations(diagram, options);
+  const oblique::solve::Run result = solve::run(network::Program(network::assemble(flat)), flat, options);
+  for (const report::ExpectationResult& expectation : report::check_expectations(diagram, result))
+    EXPECT_TRUE(expectation.met) << expectation.expectation.text << " = " << expectation.actual;
+}
+
 }  // namespace
 }  // namespace oblique::test

@@ -102,7 +102,7 @@ class Switching {
 
   /// A step of this length [s] has led to where events are searched for next; it damps what is fast, or is 0.
   void take_step(double length) {
-    event_functions_.take_steps(slide_.active() ? 0 : length);
+    event_functions_.take_steps(length, slide_.units());
     wrong_sides_.take_step();
   }
 

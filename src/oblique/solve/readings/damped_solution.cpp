@@ -21,11 +21,13 @@ void DampedSolution::states_at(double t, std::span<double> x) const {
   polynomial_->rates_at(t, rates_);
   if (!damping_.derivatives(t, x, residual_)) return;
   for (std::size_t i = 0; i < x.size(); ++i)
-    residual_[i] = damping_.step_length() * (residual_[i] - rates_[i]);
+    residual_[i] = damping_.leaves(i) ? 0 : damping_.step_length() * (residual_[i] - rates_[i]);
   damping_.apply(residual_);
   const bool known =
       std::all_of(residual_.begin(), residual_.end(), [](double v) { return std::isfinite(v); });
-  for (std::size_t i = 0; known && i < x.size(); ++i) x[i] += residual_[i];
+  for (std::size_t i = 0; known && i < x.size(); ++i) {
+    if (!damping_.leaves(i)) x[i] += residual_[i];
+  }
 }
 
 void DampedSolution::rates_at(double t, std::span<double> dxdt) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <oblique/solve/integrator/interpolant.h>
@@ -19,6 +20,8 @@ class DampedSolution final : public Interpolant {
   /// The program must outlive this.
   explicit DampedSolution(const network::Program& program) : damping_(program) {}
 
+  /// See ErrorDamping.
+  void leave(std::vector<bool> states) { damping_.leave(std::move(states)); }
   /// Takes a step of this length [s] that ends at (t, x), and the equations linearised there with the
   /// discrete states of `workspace`; false where they tell nothing. `polynomial` must last as long as this is
   /// used.

@@ -20,8 +20,13 @@ bool ErrorDamping::derivatives(double t, std::span<const double> x, std::span<do
 }
 
 void ErrorDamping::apply(std::span<double> errors) {
-  for (double& error : errors) error /= length_;  // (1/h − J)⁻¹/h
-  matrix_->solve(errors);
+  std::vector<double> left;
+  if (!left_.empty()) left.assign(errors.begin(), errors.end());
+  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] = leaves(i) ? 0 : errors[i] / length_;
+  matrix_->solve(errors);  // (1/h − J)⁻¹/h
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    if (leaves(i)) errors[i] = left[i];
+  }
 }
 
 }  // namespace oblique::solve

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <oblique/network/program/program.h>
@@ -24,6 +25,11 @@ class ErrorDamping {
   bool any() const { return length_ > 0; }
   double step_length() const { return length_; }
 
+  /// Of these states the equations are not known, since they slide: their errors stay as they are. Empty:
+  /// there are none.
+  void leave(std::vector<bool> states) { left_ = std::move(states); }
+  bool leaves(std::size_t state) const { return !left_.empty() && left_[state]; }
+
   /// Takes the equations linearised at (t, x) with the discrete states of `workspace`, which is left as it
   /// is; false where they tell nothing.
   bool linearise(double t, std::span<const double> x, const network::Workspace& workspace);
@@ -37,7 +43,8 @@ class ErrorDamping {
   std::optional<network::Workspace> scratch_;  ///< these two once they are needed
   std::optional<StepMatrix> matrix_;
   std::vector<double> jacobian_;
-  double length_ = 0;  ///< [s]
+  double length_ = 0;       ///< [s]
+  std::vector<bool> left_;  ///< see `leave`
 };
 
 }  // namespace oblique::solve

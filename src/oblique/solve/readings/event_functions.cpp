@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/solve/readings/event_functions.h>
 
+#include <utility>
+
 #include <oblique/network/program/program.h>
+#include <oblique/solve/readings/driven_states.h>
 #include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 
@@ -85,6 +88,22 @@ bool EventFunctions::is_any_fine() {
   return false;
 }
 
+void EventFunctions::take_steps(double length, const std::vector<std::uint32_t>& sliding) {
+  damping_.take_steps(length);
+  if (sliding == sliding_) return;
+  sliding_ = sliding;
+  leaves_ = false;
+}
+
+void EventFunctions::leave_what_slides() {
+  if (leaves_) return;
+  std::vector<bool> left;
+  if (!sliding_.empty()) left = driven_states(program_, sliding_, time_, states_, workspace_);
+  damping_.leave(left);
+  damped_.leave(std::move(left));
+  leaves_ = true;
+}
+
 const Interpolant& EventFunctions::within_step(const Interpolant& solution) {
   const bool damps =
       is_any_fine() && damped_.begin(solution, damping_.step_length(), time_, states_, workspace_);
@@ -93,6 +112,7 @@ const Interpolant& EventFunctions::within_step(const Interpolant& solution) {
 
 const EventFunctionErrors& EventFunctions::weigh_errors() {
   if (!weighed_) {
+    if (damping_.any()) leave_what_slides();
     const bool damped = damping_.any() && damping_.linearise(time_, states_, workspace_);
     errors_.weigh(here(), states_, damped ? &damping_ : nullptr);
   }

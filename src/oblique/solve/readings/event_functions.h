@@ -38,8 +38,8 @@ class EventFunctions {
   /// `evaluate` then throws Interrupted.
   void end_when(const Interruption& interruption) { interruption_ = interruption; }
   void know_states(std::span<const double> reach) { errors_.know_states(reach); }
-  /// See ErrorDamping.
-  void take_steps(double length) { damping_.take_steps(length); }
+  /// See ErrorDamping; `sliding` are the units that slide along the steps.
+  void take_steps(double length, const std::vector<std::uint32_t>& sliding);
   bool steps_damp() const { return damping_.any(); }
   /// The solution within a step, at whose end all was evaluated: with its errors damped where some event
   /// function is so near to zero there that only its damped error tells its side.
@@ -81,6 +81,7 @@ class EventFunctions {
  private:
   bool is_any_due(const Announced& announced) const;
   bool is_any_fine();
+  void leave_what_slides();
 
   const network::Program& program_;
   network::Workspace& workspace_;
@@ -94,7 +95,9 @@ class EventFunctions {
   std::vector<double> values_, states_;
   double time_ = 0;
   std::vector<std::optional<double>> known_rates_;
-  bool weighed_ = false;  ///< whether the errors are those of `states_`
+  std::vector<std::uint32_t> sliding_;  ///< units, whose states the damping leaves
+  bool leaves_ = true;                  ///< whether that has been told to it
+  bool weighed_ = false;                ///< whether the errors are those of `states_`
 };
 
 }  // namespace oblique::solve

@@ -194,3 +194,12 @@ def tank_with_a_float():
         elif hit == 1:
             dry, motion.y[0] = True, 0
     return {f"{name} at {t}": motion(t)[k] for t in (3.1, 8, 20) for k, name in enumerate("hf")} | {"f at 50": motion(50)[1]}
+
+
+def mean_angle_of_a_turning_vector():
+    return {"angle at 5": 45, "angle at 10": 90, "z at 10": 0.1 * 9 * 10**2 / 2}
+
+
+def arc_sine_between_rows():
+    truths = {f"a at {t}": np.arcsin(0.999 * np.sin(11 * t)) for t in (1.3, 9.1, 10)}
+    return truths | {"a maximum": np.arcsin(0.999)}
