@@ -110,8 +110,8 @@ TEST(Sheets, TellWhatEveryElementShowsAtTheStart) {
 // of 0.5 at 0.5, beyond which it is level.
 TEST(Sheets, GiveTheSettingsOfFunctionGenerators) {
   const Sheet functions = sheets_as_written(R"(
-x = { type = "integrator", in = ["f"] }
 f = { type = "function-generator", in = "x", points = [[-1, 0.5], [-0.4, -0.1], [0.2, 0.2], [0.5, 0.5], [0.5, 0], [1, 0]] }
+x = { type = "integrator", in = ["f"] }
 )")
                               .functions;
   EXPECT_THAT(functions.columns, ElementsAre("element", "signal", "breakpoint [V]", "output [V]",
