@@ -63,13 +63,14 @@ TEST_P(ForeignDiagram, GivesTheTruth) {
 }
 
 /// Diagrams that were answered wrongly, or refused, where a relay slid beside them: what is small, what
-/// follows quickly, and what flips.
+/// follows quickly, what flips, and what rests where its own slide ends.
 std::vector<std::string> diagrams_beside_a_slide() {
   std::vector<std::string> paths;
   for (const char* const name :
        {"half_wave_rectifier", "slope_by_a_fast_lag", "prandtl_ishlinskii", "oscillator_of_nanoamperes",
         "traces_beside_a_unit", "eccles_jordan", "schmitt_by_feedback", "limiter_astable",
-        "fold_by_a_limiter", "limiter_with_positive_feedback"}) {
+        "fold_by_a_limiter", "limiter_with_positive_feedback", "time_optimal_by_switch",
+        "time_optimal_unequal", "saturating_time_optimal"}) {
     for (const std::string& path : foreign_diagrams()) {
       if (std::filesystem::path(path).stem() == name) paths.push_back(path);
     }

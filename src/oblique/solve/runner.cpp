@@ -86,7 +86,7 @@ void Runner::start() {
   }
   segments_.follow_phases(begin_);
   workspace_.follow_branches(true);
-  if (!switching_.slides()) branches_.look(begin_, states_, true);
+  branches_.look(begin_, states_, true, [this](std::size_t loop) { return switching_.mixes(loop); });
   if (sensitivities_) {
     if (switching_.slides()) sensitivities_->refuse_slide(begin_);
     sensitivities_->start(begin_, states_, workspace_, options_.from.has_value());

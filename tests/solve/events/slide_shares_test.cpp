@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/solve/events/slide_shares.h>
 
+#include <array>
+#include <cstddef>
+
 #include <gtest/gtest.h>
 
 #include "../../support/compiled.h"
@@ -16,6 +19,8 @@ b = { type = "sign", in = "y" }
 x = { type = "integrator", in = "-a" }
 y = { type = "integrator", in = "-b" }
 )";
+
+constexpr std::array<std::size_t, 2> kBoth = {0, 1};
 
 class SharesOfTwo : public ::testing::Test {
  protected:
@@ -42,10 +47,10 @@ class SharesOfTwo : public ::testing::Test {
 
 // A side for all that are below, and of each cluster one for every other combination.
 TEST_F(SharesOfTwo, MixCoupledUnitsInAllCombinations) {
-  sides_.make({0, 1}, false);
+  sides_.make({0, 1}, {});
   EXPECT_EQ(sides_.size(), 3U);
   EXPECT_FALSE(sides_.is_coupled(0));
-  sides_.make({0, 1}, true);
+  sides_.make({0, 1}, {{0, 1}});
   EXPECT_EQ(sides_.size(), 4U);
   EXPECT_TRUE(sides_.is_coupled(0));
   sides_.weigh(std::vector<double>{0.25, 0.5});
@@ -57,11 +62,11 @@ TEST_F(SharesOfTwo, MixCoupledUnitsInAllCombinations) {
 // ẋ goes as 1 − 4a and ẏ as 0.5 + 4a − 3b + 2ab by the shares a and b: both vanish at a = 1/4, b = 3/5. The
 // tolerance is some roundings of rates below 8.
 TEST_F(SharesOfTwo, HoldBothSwitchingSurfaces) {
-  sides_.make({0, 1}, true);
+  sides_.make({0, 1}, {{0, 1}});
   set_rates([](double a, double b) {
     return std::vector<double>{1 - 4 * a, 0.5 + 4 * a - 3 * b + 2 * a * b};
   });
-  const auto shares = shares_of_coupled(sides_, {0.5, 0.5}, 1, 1e-6);
+  const auto shares = shares_of_coupled(sides_, {0.5, 0.5}, kBoth, 1, 1e-6);
   ASSERT_TRUE(shares);
   EXPECT_NEAR((*shares)[0], 0.25, 1e-13);
   EXPECT_NEAR((*shares)[1], 0.6, 1e-13);
@@ -69,14 +74,14 @@ TEST_F(SharesOfTwo, HoldBothSwitchingSurfaces) {
 
 // Both sides of the second unit drive its event function up alike: no share holds it.
 TEST_F(SharesOfTwo, AreNoneWhereBothSidesDriveAlike) {
-  sides_.make({0, 1}, false);
+  sides_.make({0, 1}, {});
   set_rates([](double a, double /*b*/) { return std::vector<double>{1 - 4 * a, 2}; });
-  EXPECT_FALSE(shares_of_coupled(sides_, {0.5, 0.5}, 1, 1e-6));
+  EXPECT_FALSE(shares_of_coupled(sides_, {0.5, 0.5}, kBoth, 1, 1e-6));
 }
 
 // An event function that is 0.01 off goes back by rate · 0.01, and no faster than it may.
 TEST_F(SharesOfTwo, TakeADriftBack) {
-  sides_.make({0, 1}, false);
+  sides_.make({0, 1}, {});
   set_rates([](double a, double b) { return std::vector<double>{1 - 4 * a, 1 - 4 * b}; });
   for (SlideSide& side : sides_) {
     for (const std::uint32_t s : made_.program.switch_structure().members[0]) side.event_functions[s] = 0.01;

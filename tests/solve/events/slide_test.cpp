@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sliding along event functions, and chatter, against closed forms.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -327,6 +328,75 @@ y = { type = "integrator", in = ["one"] }
                                 "surface from t = 0.5"));
     }
   }
+}
+
+/// Two relays that hold integrators at zero against 0.3, so that each is up for 0.65 of the time, and what q
+/// integrates of them.
+Compiled two_held(const std::string& together) {
+  return Compiled(R"toml(one = { type = "constant" }
+a = { type = "integrator", in = ["-ra", "0.3*one"], initial = 0.5 }
+b = { type = "integrator", in = ["-rb", "0.3*one"], initial = 0.4 }
+ra = { type = "sign", in = "a" }
+rb = { type = "sign", in = "b" }
+)toml" + together);
+}
+
+// Of a product nothing says with which share of the time both are up: that is told. As independent they give
+// 0.3², to the tolerance from where both slide.
+TEST(Slides, ThatActTogetherOtherwiseThanEachAreTold) {
+  const auto result = run_of(two_held(R"toml(p = { type = "multiplier", in = ["ra", "rb"] }
+q = { type = "integrator", in = "p" }
+)toml"),
+                             {.until = 4, .extra_times = {1, 3}});
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(
+      result.warnings[0].what,
+      "'ra' (in > 0) slides along its switching surface together with 'rb' from t = 0.714285714 s on, and "
+      "what follows depends on how the turns of the one fall in with those of the other: they are taken as "
+      "independent");
+  EXPECT_EQ(result.warnings[0].remedy,
+            "give the comparisons a hysteresis, so that the diagram says when they turn over");
+  const auto q = testing::column_of(result.extra, "q");
+  EXPECT_NEAR(q[1] - q[0], 2 * 0.09, 1e-6);
+}
+
+TEST(Slides, ThatAreAddedAreNoneOfThese) {
+  const auto result =
+      run_of(two_held("q = { type = \"integrator\", in = [\"ra\", \"rb\"] }\n"), {.until = 4});
+  EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+}
+
+// The flip-flop reads the second relay, and the first has nothing to do with it.
+TEST(Slides, AreNamedWhereSomethingDependsOnThem) {
+  const auto result = run_of(two_held("n = { type = \"counter\", clock = \"rb\" }\n"), {.until = 2});
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_THAT(result.warnings[0].what, HasSubstr("depends on 'rb', which slides"));
+}
+
+// Three coupled relays, and a clock that sets an integrator 20 times beside them: what slides is entered and
+// left as often as without it.
+TEST(Slides, GoOnBesideEventsThatDoNotConcernThem) {
+  const std::string slides = R"toml(f1 = { type = "time-function", formula = "1.2*sin(time)" }
+f2 = { type = "time-function", formula = "cos(1.3*time)" }
+x = { type = "integrator", in = ["-2*x", "-0.5*y", "f1", "-0.5*sx"], initial = 0.5 }
+y = { type = "integrator", in = ["-0.5*x", "-1.5*y", "f2", "-0.5*sy"], initial = -0.3 }
+sx = { type = "sign", in = "x" }
+sy = { type = "sign", in = "y" }
+)toml";
+  const std::string clock = R"toml(s = { type = "pulse-train", period = 0.3, width = 0.15, delay = 0.0581395 }
+q = { type = "integrator", in = "s", set = "s" }
+)toml";
+  const auto turns_of = [](const oblique::solve::Run& result) {
+    return std::count_if(result.events.begin(), result.events.end(), [](const EventRecord& event) {
+      return event.what.starts_with("sx") || event.what.starts_with("sy");
+    });
+  };
+  const auto alone = run_of(Compiled(slides), {.until = 6}),
+             beside = run_of(Compiled(slides + clock), {.until = 6});
+  EXPECT_GT(turns_of(alone), 4);
+  EXPECT_EQ(turns_of(alone), turns_of(beside));
+  EXPECT_GT(beside.events.size(), alone.events.size() + 20);
+  EXPECT_THAT(beside.warnings, ::testing::IsEmpty());
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ y = {{ type = "integrator", in = "-b" }}
                                              jump));
     network::Workspace workspace(made.program);
     EdgeValues edges(made.program, workspace, 1);
-    SlidingMode slide(made.program, workspace, edges, 1);
+    IndependentUnits independent(made.program);
+    SlidingMode slide(made.program, workspace, edges, independent, 1);
     ASSERT_EQ(made.program.states()[1].name, "y");
     EXPECT_EQ(slide.begin({0, 1}, 0, std::vector<double>{0, jump}), jump == 0);
   }

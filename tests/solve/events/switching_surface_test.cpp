@@ -15,6 +15,7 @@
 namespace oblique::solve {
 namespace {
 
+using testing::column_of;
 using testing::Compiled;
 using testing::row_values;
 using testing::run_of;
@@ -291,6 +292,34 @@ TEST(Switch, IsToldOfWhereItCouldStartOnItsOtherSideByAnother) {
   ASSERT_EQ(warnings("0.5").size(), 1U);
   EXPECT_THAT(warnings("0.5").front().what, ::testing::HasSubstr("has several solutions: at t = 0 s"));
   EXPECT_THAT(warnings("0.8"), ::testing::IsEmpty());
+}
+
+// A ball between a floor and a ceiling that comes down, whose two comparators are compared in turn at 0 and
+// 0, and a latch that flips beside it: where the one rests at its level the other has not settled yet. The
+// ball goes as it does alone, to the tolerance of some twenty contacts.
+TEST(SwitchingSurface, IsLeftOnceWhatIsIndependentHasSettled) {
+  const std::string ball = R"toml(one = { type = "constant" }
+x = { type = "integrator", in = "v", initial = 0.5 }
+v = { type = "integrator", start = "nv", set = "hit", initial = 0 }
+level = { type = "time-function", formula = "1 - 0.1*time" }
+up = { type = "comparator", in = ["x", "-level"] }
+dn = { type = "comparator", in = "-x" }
+hit = { type = "maximum", in = ["up", "dn"] }
+nv = { type = "electronic-switch", on = "a", off = "b", control = "up" }
+a = { type = "summer", in = ["-v", "-0.2*one"] }
+b0 = { type = "gain", factor = -1, in = "v" }
+b = { type = "electronic-switch", on = "b0", off = "one", control = "dn" }
+)toml";
+  const std::string latch = R"toml(f = { type = "time-function", formula = "1.5*sin(time)" }
+s = { type = "summer", in = ["2*y", "f"] }
+y = { type = "limiter", in = "s" }
+q = { type = "integrator", in = "y" }
+)toml";
+  const std::vector<double> times = {2, 5, 8};
+  const auto alone = run_of(Compiled(ball), {.until = 9.5, .extra_times = times});
+  const auto beside = run_of(Compiled(ball + latch), {.until = 9.5, .extra_times = times});
+  const auto x = column_of(alone.extra, "x"), x_beside = column_of(beside.extra, "x");
+  for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(x_beside[k], x[k], 1e-6) << times[k];
 }
 
 }  // namespace

@@ -31,6 +31,9 @@ class Finder {
   }
 
  private:
+  bool is_state(const Node& node) const {
+    return node.op == Op::variable && node.variable > 0 && node.variable <= network_.states.size();
+  }
   bool is_unknown(const Node& node) const {
     return node.op == Op::variable && node.variable > network_.states.size();
   }
@@ -110,6 +113,8 @@ class Finder {
     structure_.switch_at.assign(graph.size(), SwitchStructure::kNone);
     structure_.discrete_state_at.assign(graph.size(), SwitchStructure::kNone);
     structure_.loop_at.assign(graph.size(), SwitchStructure::kNone);
+    structure_.state_at.assign(graph.size(), SwitchStructure::kNone);
+    for (const State& state : network_.states) structure_.derivatives.push_back(state.derivative);
     structure_.n_discrete_states = network_.discrete_states.size();
     // The residuals of a loop stand with the first of its unknowns, and the others lead there.
     std::vector<std::uint32_t> first_unknown(network_.loops.size(), SwitchStructure::kNone);
@@ -120,6 +125,7 @@ class Finder {
         structure_.discrete_state_at[id] = node.variable;
         structure_.switch_at[id] = switch_of_[node.variable];
       }
+      if (is_state(node)) structure_.state_at[id] = node.variable - 1;
       std::vector<std::uint32_t>& operands = structure_.operands;
       for (int i = 0; i < operand_count(node.op); ++i) operands.push_back(node.operand(i));
       if (is_unknown(node)) {
@@ -202,22 +208,40 @@ class Finder {
   SwitchStructure structure_;
 };
 
+/// Visits nodes, and all below them, each once.
+class Descent {
+ public:
+  explicit Descent(const SwitchStructure& structure)
+      : structure_(structure), seen_(structure.switch_at.size(), false) {}
+
+  void add(NodeId node) {
+    if (!seen_[node]) pending_.push_back(node);
+    seen_[node] = true;
+  }
+
+  template <class Visit>
+  void run(const Visit& visit) {
+    while (!pending_.empty()) {
+      const NodeId id = pending_.back();
+      pending_.pop_back();
+      visit(id);
+      for (std::uint32_t k = structure_.first_operand[id]; k < structure_.first_operand[id + 1]; ++k)
+        add(structure_.operands[k]);
+    }
+  }
+
+ private:
+  const SwitchStructure& structure_;
+  std::vector<bool> seen_;
+  std::vector<NodeId> pending_;
+};
+
 /// All nodes below `root`, itself included.
 template <class Visit>
 void visit_below(const SwitchStructure& structure, NodeId root, const Visit& visit) {
-  std::vector<bool> seen(structure.switch_at.size(), false);
-  std::vector<NodeId> pending{root};
-  seen[root] = true;
-  while (!pending.empty()) {
-    const NodeId id = pending.back();
-    pending.pop_back();
-    visit(id);
-    for (std::uint32_t k = structure.first_operand[id]; k < structure.first_operand[id + 1]; ++k) {
-      const NodeId operand = structure.operands[k];
-      if (!seen[operand]) pending.push_back(operand);
-      seen[operand] = true;
-    }
-  }
+  Descent descent(structure);
+  descent.add(root);
+  descent.run(visit);
 }
 
 }  // namespace
@@ -257,6 +281,41 @@ std::vector<bool> SwitchStructure::discrete_states_below_loop(std::size_t loop) 
     if (discrete_state_at[id] != kNone) below[discrete_state_at[id]] = true;
   });
   return below;
+}
+
+SwitchStructure::Ancestry SwitchStructure::ancestry(std::uint32_t of_unit,
+                                                    const std::vector<Event>& events) const {
+  // What the events that act on each state and each discrete state are made of.
+  std::vector<std::vector<NodeId>> on_states(derivatives.size()), on_discrete_states(n_discrete_states);
+  const auto add_actions = [&](const Event& event, NodeId condition) {
+    for (const Event::Action& action : event.actions) {
+      auto& nodes = action.on_state ? on_states[action.index] : on_discrete_states[action.index];
+      nodes.insert(nodes.end(), {condition, action.value});
+    }
+  };
+  for (const Event& event : events) {
+    add_actions(event, event.condition);
+    if (event.piling_up) add_actions(events[*event.piling_up], event.condition);
+  }
+  Ancestry found{std::vector<bool>(derivatives.size(), false), std::vector<bool>(n_discrete_states, false)};
+  Descent descent(*this);
+  const auto add = [&](const std::vector<NodeId>& nodes) {
+    for (const NodeId node : nodes) descent.add(node);
+  };
+  for (const std::uint32_t s : members[of_unit]) descent.add(event_functions[s]);
+  descent.run([&](NodeId id) {
+    if (const std::uint32_t state = state_at[id]; state != kNone) {
+      found.states[state] = true;
+      descent.add(derivatives[state]);
+      add(on_states[state]);
+    }
+    if (const std::uint32_t kept = discrete_state_at[id]; kept != kNone) {
+      found.discrete_states[kept] = true;
+      add(on_discrete_states[kept]);
+    }
+    if (switch_at[id] != kNone) descent.add(event_functions[switch_at[id]]);
+  });
+  return found;
 }
 
 std::vector<bool> SwitchStructure::followers_of(const std::vector<bool>& these) const {

@@ -41,6 +41,13 @@ struct SwitchStructure {
   /// switch), or on that of another that does.
   std::vector<bool> followers_of(const std::vector<bool>& these) const;
 
+  /// The states and the discrete states on which an event function ever depends, now or later: flags of each.
+  struct Ancestry {
+    std::vector<bool> states, discrete_states;
+  };
+  /// Those of the event function of a unit. `events` are the program's.
+  Ancestry ancestry(std::uint32_t of_unit, const std::vector<Event>& events) const;
+
   /// Bit b of row a: units a and b modulo 64 are coupled. Units beyond 64 share the bits of others, which
   /// couples more of them than need be.
   std::array<std::uint64_t, 64> coupled{};
@@ -52,6 +59,8 @@ struct SwitchStructure {
   std::vector<std::uint32_t> first_operand, operands;
   std::vector<std::uint32_t> switch_at;                   ///< of each node: the switch whose position it is
   std::vector<std::uint32_t> discrete_state_at, loop_at;  ///< of each node: what it is, the unknown of a loop
+  std::vector<std::uint32_t> state_at;                    ///< of each node: the state that it is
+  std::vector<NodeId> derivatives;                        ///< of each state
   std::size_t n_discrete_states = 0;
   std::vector<NodeId> event_functions;   ///< of each switch
   std::vector<std::vector<Mask>> masks;  ///< of each switch what masks its position

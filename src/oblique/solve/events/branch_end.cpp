@@ -161,14 +161,15 @@ void BranchWatch::pass(double t, const std::vector<double>& states) {
   }
 }
 
-void BranchWatch::look(double t, const std::vector<double>& states, bool told) {
+void BranchWatch::look(double t, const std::vector<double>& states, bool told,
+                       const std::function<bool(std::size_t)>& mixes) {
   const bool all_told = std::find(told_.begin(), told_.end(), false) == told_.end();
   if (all_told) return;
   std::vector<double> signals(program_.n_signals());
   const auto here = program_.signals(t, states.data(), signals.data(), workspace_);
   if (!here) return;  // whoever looks there next says what is wrong
   for (std::size_t loop = 0; loop < told_.size(); ++loop) {
-    if (told_[loop]) continue;
+    if (told_[loop] || mixes(loop)) continue;
     Eigen::MatrixXd jacobian = here->loop_jacobian(loop);
     const bool first = judged_[loop].size() == 0;
     if (!first && jacobian == judged_[loop]) continue;  // of linear equations, at most events

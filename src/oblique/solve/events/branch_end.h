@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,8 +66,9 @@ class BranchWatch {
   void pass(double t, const std::vector<double>& states);
 
   /// Tells, once of each, of loops that an event at t has left where their amplifiers do not rest; those that
-  /// are `told` of already are noted alone. Not while something slides, which mixes two solutions.
-  void look(double t, const std::vector<double>& states, bool told);
+  /// are `told` of already are noted alone; but of none that a slide `mixes`.
+  void look(double t, const std::vector<double>& states, bool told,
+            const std::function<bool(std::size_t)>& mixes);
 
   /// To another branch, where the amplifiers rest.
   const std::vector<EventRecord>& jumps() const { return jumps_; }

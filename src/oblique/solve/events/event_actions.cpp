@@ -196,6 +196,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
     uncertain_.look(events, values, t, x);
   }
   Effect effect;
+  effect.events = events;
   effect.tables = program_.events()[served.front().event].repeats;
   for (const Change& change : changes) {
     if (change.action->on_state) {

@@ -41,8 +41,9 @@ class EventActions {
   /// What events have done at one instant.
   struct Effect {
     bool sets_states = false;
-    bool jumps = false;   ///< a state has another value now
-    bool tables = false;  ///< nothing has come but that tables were moved along
+    bool jumps = false;               ///< a state has another value now
+    bool tables = false;              ///< nothing has come but that tables were moved along
+    std::vector<std::size_t> events;  ///< that have been served
   };
   /// Serves all events whose conditions have become true at (t, x), where all event functions were evaluated;
   /// while `starting` only those that come at a start. Nothing where there are none. Throws SolveError.

@@ -73,6 +73,7 @@ std::optional<EventSearch::Found> EventLocation::search(double from, std::span<c
   if (!found) return std::nullopt;
   withdraw_all();
   for (const auto& [s, position] : found->turned) announced_[s] = position;
+  slide_changes_ = found->slide_changes;
   return found;
 }
 

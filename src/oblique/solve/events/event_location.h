@@ -40,6 +40,8 @@ class EventLocation {
   double nearest() const { return search_.nearest(); }
   const std::vector<EventSearch::NearMiss>& near_misses() const { return search_.near_misses(); }
   const Announced& announced() const { return announced_; }
+  /// Whether what was found last ends a slide, or turns over what follows it.
+  bool slide_changes() const { return slide_changes_; }
   /// At the beginning of an instant that is settled: withdraws switches that follow time alone and are not
   /// due yet at t, where the event functions were evaluated last: the segment may have ended before their
   /// time.
@@ -47,7 +49,10 @@ class EventLocation {
   /// Withdraws switches whose event functions have moved away from zero at t; or all, but for those that
   /// follow the time alone, of which no jump of states takes one back.
   void withdraw_past(double t, bool all);
-  void withdraw_all() { announced_.assign(announced_.size(), std::nullopt); }
+  void withdraw_all() {
+    announced_.assign(announced_.size(), std::nullopt);
+    slide_changes_ = false;
+  }
 
  private:
   bool is_due(std::size_t s, double t) const;
@@ -57,6 +62,7 @@ class EventLocation {
   EventFunctions& event_functions_;
   EventSearch search_;
   Announced announced_;
+  bool slide_changes_ = false;    ///< see `slide_changes`
   std::vector<std::size_t> due_;  ///< switches that follow time alone, when it was settled last
   std::vector<bool> let_pass_;    ///< of each switch
 };

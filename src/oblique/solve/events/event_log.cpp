@@ -59,6 +59,7 @@ void EventLog::record_slides(const std::vector<std::uint32_t>& before,
     if (!contains(before, unit)) tell(unit, "stays at");
   }
   warn_of_torn(slide, t);
+  if (slide.units() != before) warn_of_acting_together(slide, t);
 }
 
 void EventLog::warn(text::Diagnostic warning) {
@@ -135,6 +136,18 @@ void EventLog::warn_of_hidden(std::uint32_t s, bool holds, double since, double 
          ", or make what it compares larger: a slower element, a higher resistance, a lower rate"}});
 }
 
+/// Tells that what is slid along is taken as if two switches turned over independently of each other.
+void EventLog::warn_of_acting_together(const SlidingMode& slide, double t) {
+  const auto units = slide.act_together();
+  if (!units) return;
+  warn_of_unit(
+      units->first, "slides along its switching surface",
+      fmt::format(" together with '{}' from t = {:.9g} s on, and what follows depends on how the turns "
+                  "of the one fall in with those of the other: they are taken as independent",
+                  first_of(units->second).block, t),
+      "give the comparisons a hysteresis, so that the diagram says when they turn over");
+}
+
 void EventLog::warn_of_halt(std::uint32_t unit, double t) {
   warn_of_unit(
       unit, "stops on the switching surface that it slid along",
@@ -198,7 +211,7 @@ void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
     const std::string what = fmt::format(
         "'{}' ({}) depends on '{}', which slides along its switching surface{}{:.9g} s: it switches "
         "without end, which is not counted and not stored",
-        follower.block, follower.comparison, first_of(slide.units().front()).block, kWhen, t);
+        follower.block, follower.comparison, first_of(slide.followed_by(s)).block, kWhen, t);
     const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
       return warning.what.substr(0, warning.what.find(kWhen)) == what.substr(0, what.find(kWhen));
     });

@@ -66,6 +66,7 @@ class EventLog {
   void warn_of_unit(std::uint32_t unit, const char* what, const std::string& rest, const char* remedy);
   void warn_of_leaving(std::uint32_t unit, SlidingMode::Doubt doubt, double t);
   void warn_of_torn(const SlidingMode& slide, double t);
+  void warn_of_acting_together(const SlidingMode& slide, double t);
 
   const network::Program& program_;
   const std::string& file_;

@@ -9,10 +9,11 @@
 
 namespace oblique::solve {
 
-LevelRest::LevelRest(const network::Program& program, network::Workspace& workspace,
+LevelRest::LevelRest(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
                      const Thresholds& thresholds, double span)
     : program_(program),
       workspace_(workspace),
+      slide_(slide),
       thresholds_(thresholds),
       span_(span),
       probe_(program, workspace, span),
@@ -39,7 +40,7 @@ bool LevelRest::take(std::uint32_t unit, const std::vector<std::uint32_t>& besid
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   if (!program_.event_functions(t, x.data(), event_functions_.data(), workspace_)) return false;
   const double event_function = event_functions_[structure.members[unit].front()];
-  placed_.assign(event_functions_.size(), false);
+  placed_ = slide_.taken();
   for (const std::uint32_t other : beside) {
     for (const std::uint32_t s : structure.members[other]) placed_[s] = true;
   }

@@ -73,9 +73,13 @@ bool may_have_several(const network::Program& program, std::size_t loop) {
          (!program.loop_is_linear(loop) || (is_small(program, loop) && !switches_on(program, loop).empty()));
 }
 
-LoopJumps::LoopJumps(const network::Program& program, network::Workspace& workspace,
+LoopJumps::LoopJumps(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
                      const Thresholds& thresholds)
-    : program_(program), workspace_(workspace), thresholds_(thresholds), signals_(program.n_signals()) {
+    : program_(program),
+      workspace_(workspace),
+      slide_(slide),
+      thresholds_(thresholds),
+      signals_(program.n_signals()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
     Watched watched{loop, SwitchPlacing(program, switches_on(program, loop)), directions_of(program, loop)};
     // Of linear equations that nothing changes on the way there is one solution.
@@ -128,7 +132,8 @@ void LoopJumps::place(std::size_t loop, const std::vector<double>& unknowns, dou
 bool LoopJumps::settle(double t, std::span<const double> x) {
   bool any = false;
   for (Watched& watched : watched_) {
-    const auto here = watched.goes ? pull(watched, t, x, workspace_) : std::nullopt;
+    const bool goes = watched.goes && !slide_.mixes(watched.loop);
+    const auto here = goes ? pull(watched, t, x, workspace_) : std::nullopt;
     if (!here) continue;
     std::vector<double> now;
     for (std::size_t u = 0; u < unknowns_.size(); ++u) now.push_back(workspace_.unknown(u));

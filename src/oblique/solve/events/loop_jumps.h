@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/readings/switch_placing.h>
 #include <oblique/solve/readings/thresholds.h>
 
@@ -25,12 +26,13 @@ bool may_have_several(const network::Program& program, std::size_t loop);
 /// would run away; and where there are several, Newton's method goes to any. The loop then goes where its
 /// elements take it from where it was, if they follow their inputs with one short lag, while the switches and
 /// tables in it turn over on the way. So go amplifiers that have limits, where they would run away from
-/// between these; of others see BranchWatch, and only where a run finds no start do they go so too. Not
-/// installed.
+/// between these; of others see BranchWatch, and only where a run finds no start do they go so too. A loop on
+/// which something acts that slides stays as it is. Not installed.
 class LoopJumps {
  public:
   /// All must outlive this.
-  LoopJumps(const network::Program& program, network::Workspace& workspace, const Thresholds& thresholds);
+  LoopJumps(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
+            const Thresholds& thresholds);
 
   /// Whether there is any such loop.
   bool any() const { return any_goes_; }
@@ -75,6 +77,7 @@ class LoopJumps {
 
   const network::Program& program_;
   network::Workspace& workspace_;
+  const SlidingMode& slide_;
   const Thresholds& thresholds_;
   std::vector<Watched> watched_;
   bool any_goes_ = false;

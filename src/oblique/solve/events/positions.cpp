@@ -31,8 +31,8 @@ Positions::Positions(const network::Program& program, network::Workspace& worksp
       slide_(slide),
       thresholds_(thresholds),
       bends_(program, workspace, span),
-      trials_(program, workspace, thresholds, span),
-      level_rest_(program, workspace, thresholds, span) {}
+      trials_(program, workspace, slide, thresholds, span),
+      level_rest_(program, workspace, slide, thresholds, span) {}
 
 /// Sets those apart that only bend where there are no others, or too many for trials. Together with a few
 /// others they take part in the trials: they may rest while these slide. The others are left.
@@ -150,7 +150,7 @@ void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vect
     workspace_.set_discrete_state(program_.switches()[s].discrete_state,
                                   before->event_functions[s] == 0 ? 0 : preferred[s]);
   }
-  std::vector<bool> placed(preferred.size(), false);
+  std::vector<bool> placed = slide_.taken();
   for (const std::uint32_t other : trials_.units()) {
     for (const std::uint32_t s : program_.switch_structure().members[other]) placed[s] = true;
   }
@@ -203,13 +203,14 @@ bool Positions::slide(Combination present, double t, std::span<const double> x) 
 /// Slides along some units with the others on their sides.
 bool Positions::try_slide(Combination sliding, Combination sides, double t, std::span<const double> x) {
   if (!trials_.place(sides, bends_, t, x)) return false;
+  const std::vector<std::uint32_t> before = slide_.units();
   std::vector<std::uint32_t> units;
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
     if (has(sliding, u)) units.push_back(trials_.units()[u]);
   }
-  if (!slide_.begin(std::move(units), t, x)) return false;
+  if (!slide_.begin(units, t, x)) return false;
   if (fits_slide(sliding, sides)) return true;
-  slide_.end();
+  slide_.keep(before, t, x);
   return false;
 }
 

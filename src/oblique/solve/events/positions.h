@@ -19,6 +19,8 @@ namespace oblique::solve {
 /// Chooses the positions of switches that lie on their switching event functions: those from which the
 /// solution goes to the side that they stand for. Where no combination does, they slide.
 ///
+/// What slides already, independently of them, slides on.
+///
 /// Where an event function is at rest to first order, what it does a moment later decides; one along which
 /// the solution runs by itself, while the other side drives to it, is slid along too, so that rounding makes
 /// no events. Not installed.

@@ -20,7 +20,7 @@ RestingComparisons::RestingComparisons(const network::Program& program, network:
       event_functions_(event_functions),
       announced_(announced),
       log_(log),
-      level_rest_(program, workspace, event_functions.thresholds(), span),
+      level_rest_(program, workspace, slide, event_functions.thresholds(), span),
       signals_(program.n_signals()),
       derivatives_(program.n_states()),
       rates_(program.switches().size()),
@@ -99,7 +99,7 @@ bool RestingComparisons::follow(double t, std::span<const double> x, Sequel& seq
 bool RestingComparisons::follow_both(const Resting& of, double t, std::span<const double> x) {
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   const auto& members = program_.switch_structure().members[of.unit];
-  std::vector<bool> placed(event_functions_turned_.size(), false);
+  std::vector<bool> placed = slide_.taken();
   for (std::size_t m = 0; m < members.size(); ++m) {
     placed[members[m]] = true;
     workspace_.set_discrete_state(program_.switches()[members[m]].discrete_state, of.turned[m]);

@@ -87,7 +87,7 @@ Agreement choose_any(const network::Program& program, network::Workspace& worksp
   if (restless.size() > kMostTogether) return {};
   const std::vector<double> before(workspace.discrete_states().begin(), workspace.discrete_states().end());
   Combination present = 0;
-  std::vector<bool> placed(program.switches().size(), false);
+  std::vector<bool> placed = slide.taken();
   for (std::size_t k = 0; k < restless.size(); ++k) {
     placed[restless[k]] = true;
     if (workspace.discrete_state(program.switches()[restless[k]].discrete_state) == 1) present |= 1U << k;
@@ -132,10 +132,12 @@ std::optional<std::uint32_t> find_open(const network::Program& program, const ne
     if (made.turning != network::Turning::jumps || made.rate || in_loop[s] || slide.holds(s) ||
         slide.follows(s))
       continue;
-    std::vector<bool> placed(event_functions.size(), false);
-    placed[s] = true;
-    const bool feeds_itself = program.switch_structure().followers_of(placed)[s];  // by others, too
+    std::vector<bool> itself(event_functions.size(), false);
+    itself[s] = true;
+    const bool feeds_itself = program.switch_structure().followers_of(itself)[s];  // by others, too
     if (!feeds_itself) continue;
+    std::vector<bool> placed = slide.taken();
+    placed[s] = true;
     network::Workspace trial = workspace;
     trial.set_discrete_state(made.discrete_state, 1 - workspace.discrete_state(made.discrete_state));
     if (place_others(program, trial, thresholds, placed, t, x, event_functions) &&

@@ -20,9 +20,10 @@ constexpr std::size_t kMostTrials = 3;  ///< of bends and others that follow eac
 }  // namespace
 
 SideTrials::SideTrials(const network::Program& program, network::Workspace& workspace,
-                       const Thresholds& thresholds, double span)
+                       const SlidingMode& slide, const Thresholds& thresholds, double span)
     : program_(program),
       workspace_(workspace),
+      slide_(slide),
       thresholds_(thresholds),
       span_(span),
       probe_(program, workspace, span),
@@ -88,7 +89,7 @@ std::optional<network::Evaluation> SideTrials::place(Combination sides, Bends& b
                                                      std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   take_back();
-  std::vector<bool> placed(event_functions_.size(), false);
+  std::vector<bool> placed = slide_.taken();
   const auto put = [&](std::uint32_t s, double position) {
     placed[s] = true;
     workspace_.set_discrete_state(program_.switches()[s].discrete_state, position);

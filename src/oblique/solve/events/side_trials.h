@@ -10,6 +10,7 @@
 #include <oblique/solve/events/bends.h>
 #include <oblique/solve/events/combinations.h>
 #include <oblique/solve/events/rate_probe.h>
+#include <oblique/solve/events/sliding_mode.h>
 #include <oblique/solve/readings/thresholds.h>
 
 namespace oblique::solve {
@@ -20,11 +21,12 @@ namespace oblique::solve {
 class SideTrials {
  public:
   /// All must outlive this; `span` is the length of the run [s].
-  SideTrials(const network::Program& program, network::Workspace& workspace, const Thresholds& thresholds,
-             double span);
+  SideTrials(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
+             const Thresholds& thresholds, double span);
 
   /// Tries all combinations of the sides of `units` at (t, x), each with every other switch where it then
-  /// goes: `bends` where they follow, the rest where their event functions ask for it.
+  /// goes: `bends` where they follow, what slides as it does, the rest where their event functions ask for
+  /// it.
   void run(std::vector<std::uint32_t> units, Bends& bends, double t, std::span<const double> x);
 
   const std::vector<std::uint32_t>& units() const { return units_; }
@@ -82,6 +84,7 @@ class SideTrials {
 
   const network::Program& program_;
   network::Workspace& workspace_;
+  const SlidingMode& slide_;
   const Thresholds& thresholds_;
   double span_;
   std::vector<std::uint32_t> units_;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <oblique/solve/events/slide_sides.h>
@@ -13,12 +15,13 @@ namespace oblique::solve {
 /// [1/s], at most `fastest`.
 double way_back(const SlideSides& sides, std::size_t unit, double rate, double fastest);
 
-/// The shares α of several units with which no event function moves but on its way back, at most at the part
-/// `most` of the largest rate of any side: Σ weight(α) · d(event function)/dt = 0, by Newton's method from
-/// `trial`; linear for units that are not coupled. Where an event function stands still whatever the shares
-/// are, any will do for it. The sides are left with the weights of what is found. Nothing where there are
-/// none.
+/// `trial` with the shares α of the units at `places` with which none of their event functions moves but on
+/// its way back, at most at the part `most` of the largest rate of any of them on any side: Σ weight(α) ·
+/// d(event function)/dt = 0, by Newton's method from `trial`; linear for units that are not coupled. Where an
+/// event function stands still whatever the shares are, any will do for it. The sides are left with the
+/// weights of what is found. Nothing where there are none.
 std::optional<std::vector<double>> shares_of_coupled(SlideSides& sides, std::vector<double> trial,
-                                                     double rate, double most);
+                                                     std::span<const std::size_t> places, double rate,
+                                                     double most);
 
 }  // namespace oblique::solve

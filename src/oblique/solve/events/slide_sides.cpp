@@ -28,17 +28,23 @@ std::vector<std::uint64_t> broken_by(const network::Program& program,
   return broken;
 }
 
-void SlideSides::make(const std::vector<std::uint32_t>& units, bool follow) {
+void SlideSides::make(const std::vector<std::uint32_t>& units,
+                      const std::vector<std::vector<std::size_t>>& together) {
   const std::size_t n = units.size();
   first_switch_.clear();
   for (const std::uint32_t unit : units) first_switch_.push_back(structure_.members[unit].front());
   cluster_of_.resize(n);
   for (std::size_t u = 0; u < n; ++u) cluster_of_[u] = static_cast<std::uint32_t>(u);
+  const auto join = [&](std::size_t u, std::size_t v) {
+    const std::uint32_t from = cluster_of_[u], to = cluster_of_[v];
+    std::replace(cluster_of_.begin(), cluster_of_.end(), from, to);
+  };
+  for (const std::vector<std::size_t>& part : together) {
+    for (const std::size_t u : part) join(u, part.front());
+  }
   for (std::size_t u = 0; u < n; ++u) {
     for (std::size_t v = 0; v < u; ++v) {
-      if (!follow && !structure_.is_coupled(units[u], units[v])) continue;
-      const std::uint32_t from = cluster_of_[u], to = cluster_of_[v];
-      std::replace(cluster_of_.begin(), cluster_of_.end(), from, to);
+      if (structure_.is_coupled(units[u], units[v])) join(u, v);
     }
   }
   sides_.assign(1, SlideSide{});

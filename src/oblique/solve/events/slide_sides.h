@@ -39,8 +39,8 @@ class SlideSides {
   explicit SlideSides(const network::SwitchStructure& structure) : structure_(structure) {}
 
   /// Makes them anew for these units. Units are of one cluster where they are coupled, directly or through
-  /// others: positions that `follow` may couple them too.
-  void make(const std::vector<std::uint32_t>& units, bool follow);
+  /// others, and those at the places of each of `together`: positions that follow may couple them too.
+  void make(const std::vector<std::uint32_t>& units, const std::vector<std::vector<std::size_t>>& together);
   void clear();
 
   /// Whether no cluster was too large to make all its combinations.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <oblique/network/program/program.h>
 #include <oblique/solve/events/sliding_mode.h>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include <oblique/network/program/program.h>
 #include <oblique/solve/events/kept_unknowns.h>
 #include <oblique/solve/events/position_limits.h>
 #include <oblique/solve/events/slide_shares.h>
@@ -37,10 +37,11 @@ constexpr std::size_t kMostUnits = 64;
 }  // namespace
 
 SlidingMode::SlidingMode(const network::Program& program, network::Workspace& workspace, EdgeValues& edges,
-                         double span)
+                         IndependentUnits& independent, double span)
     : program_(program),
       workspace_(workspace),
       edges_(edges),
+      independent_(independent),
       span_(span),
       follows_(program.switches().size(), false),
       rests_(program.switches().size(), false),
@@ -52,6 +53,24 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
 
 bool SlidingMode::holds(std::size_t s) const {
   return std::find(units_.begin(), units_.end(), program_.switch_structure().unit[s]) != units_.end();
+}
+
+std::vector<bool> SlidingMode::taken() const {
+  std::vector<bool> taken = follows_;
+  for (const std::uint32_t unit : units_) {
+    for (const std::uint32_t s : program_.switch_structure().members[unit]) taken[s] = true;
+  }
+  return taken;
+}
+
+bool SlidingMode::mixes(std::size_t loop) const {
+  if (!active()) return false;
+  const std::vector<bool> below = program_.switch_structure().discrete_states_below_loop(loop);
+  const std::vector<bool> taken_switches = taken();
+  for (std::size_t s = 0; s < taken_switches.size(); ++s) {
+    if (taken_switches[s] && below[program_.switches()[s].discrete_state]) return true;
+  }
+  return false;
 }
 
 void SlidingMode::find_followers() {
@@ -145,12 +164,32 @@ bool SlidingMode::settle_sides(double t, std::span<const double> x) {
   return std::all_of(sides_.begin(), sides_.end(), [&](SlideSide& side) { return settle(side, t, x); });
 }
 
-bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<const double> x) {
-  if (units.size() > kMostUnits) return false;
+bool SlidingMode::begin(const std::vector<std::uint32_t>& units, double t, std::span<const double> x) {
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  const Kept kept{units_, shares_, rests_};
+  std::vector<std::uint32_t> all = units_;
+  all.insert(all.end(), units.begin(), units.end());
+  if (all.size() <= kMostUnits && make(std::move(all), kept, t, x) && attracts(t, x)) {
+    load_base();
+    slides_on_.assign(units_.size(), true);
+    return true;
+  }
+  end();
+  workspace_.load_discrete_states(before);
+  resume(kept, t, x);
+  return false;
+}
+
+/// Makes the sides of these units and of what follows them, with the shares of those that slide already.
+/// False where there are too many, or nothing agrees.
+bool SlidingMode::make(std::vector<std::uint32_t> units, const Kept& kept, double t,
+                       std::span<const double> x) {
+  std::sort(units.begin(), units.end());
   units_ = std::move(units);
+  parts_ = independent_.parts_of(units_);
+  rests_ = kept.rests;
   find_followers();
-  sides_.make(units_, !followers_.empty());
+  sides_.make(units_, followers_.empty() ? std::vector<std::vector<std::size_t>>() : parts_);
   base_.clear();
   for (std::uint32_t s = 0; s < follows_.size(); ++s) {
     const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
@@ -159,34 +198,41 @@ bool SlidingMode::begin(std::vector<std::uint32_t> units, double t, std::span<co
   }
   for (const std::uint32_t segment : segments_)
     base_.emplace_back(segment, workspace_.discrete_state(segment));
-  bool possible = sides_.are_all() && settle_sides(t, x);
   const std::vector<std::uint64_t> broken = broken_by(program_, units_);
   may_jump_.assign(units_.size(), false);
+  slides_on_.assign(units_.size(), false);
+  shares_.assign(units_.size(), 0.5);
+  bool possible = sides_.are_all() && settle_sides(t, x);
   for (std::size_t u = 0; u < units_.size(); ++u) {
     may_jump_[u] = broken[u] != 0;
     possible = possible && (broken[u] >> u & 1U) == 0;
+    const auto before = std::find(kept.units.begin(), kept.units.end(), units_[u]);
+    if (before == kept.units.end()) continue;
+    slides_on_[u] = true;
+    shares_[u] = kept.shares[static_cast<std::size_t>(before - kept.units.begin())];
   }
-  shares_.assign(units_.size(), 0.5);
-  const auto within = [](double share) { return share >= -kEdgeOfSlide && share <= 1 + kEdgeOfSlide; };
-  if (possible && evaluate(t, x) && !(largest_jump().value_or(0) > 0) &&
-      std::all_of(shares_.begin(), shares_.end(), within) && lasts(t, x)) {
-    bool attracts = true;
-    for (std::size_t u = 0; u < units_.size(); ++u)
-      attracts = attracts && !(repulsion(u).value_or(0) > kNoRepulsion);
-    if (attracts) {
-      load_base();
-      begun_ = true;
-      return true;
-    }
+  return possible;
+}
+
+/// Whether the units that are about to slide do, now and a moment later.
+bool SlidingMode::attracts(double t, std::span<const double> x) {
+  if (!evaluate(t, x) || largest_jump().value_or(0) > 0) return false;
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    const bool is_within = shares_[u] >= -kEdgeOfSlide && shares_[u] <= 1 + kEdgeOfSlide;
+    if (!slides_on_[u] && !is_within) return false;
   }
-  end();
-  workspace_.load_discrete_states(before);
-  return false;
+  if (!lasts(t, x)) return false;
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (!slides_on_[u] && repulsion(u).value_or(0) > kNoRepulsion) return false;
+  }
+  return true;
 }
 
 void SlidingMode::end() {
   if (active()) load_base();
   units_.clear();
+  parts_.clear();
+  slides_on_.clear();
   may_jump_.clear();
   followers_.clear();
   segments_.clear();
@@ -194,7 +240,28 @@ void SlidingMode::end() {
   std::fill(rests_.begin(), rests_.end(), false);
   sides_.clear();
   shares_.clear();
-  begun_ = false;
+}
+
+void SlidingMode::keep(const std::vector<std::uint32_t>& kept, double t, std::span<const double> x) {
+  if (kept.size() == units_.size()) return;
+  Kept going{kept, {}, rests_};
+  for (const std::uint32_t unit : kept)
+    going.shares.push_back(
+        shares_[static_cast<std::size_t>(std::find(units_.begin(), units_.end(), unit) - units_.begin())]);
+  for (std::size_t s = 0; s < rests_.size(); ++s) {
+    const std::uint32_t unit = program_.switch_structure().unit[s];
+    going.rests[s] = rests_[s] && std::any_of(kept.begin(), kept.end(), [&](std::uint32_t other) {
+                       return !independent_.are(unit, other);
+                     });
+  }
+  end();
+  resume(going, t, x);
+}
+
+/// Slides on as it did; no more where nothing agrees.
+void SlidingMode::resume(const Kept& kept, double t, std::span<const double> x) {
+  if (kept.units.empty()) return;
+  if (!make(kept.units, kept, t, x) || !evaluate(t, x)) end();
 }
 
 bool SlidingMode::evaluate(SlideSide& side, double t, std::span<const double> x) {
@@ -234,13 +301,15 @@ double SlidingMode::Drives::stronger() const {
   return std::max(std::abs(above), std::abs(below));
 }
 
-/// The side on which this unit alone is above; nothing of one that is coupled.
+/// The side on which this unit alone is above.
+const SlideSide& SlidingMode::upper_side(std::size_t unit) const {
+  return *std::find_if(sides_.begin(), sides_.end(),
+                       [&](const SlideSide& side) { return side.bits == std::uint64_t{1} << unit; });
+}
+
+/// The same; nothing of one that is coupled.
 const SlideSide* SlidingMode::upper_side_alone(std::size_t unit) const {
-  if (sides_.is_coupled(unit)) return nullptr;
-  const auto upper = std::find_if(sides_.begin(), sides_.end(), [&](const SlideSide& side) {
-    return side.bits == std::uint64_t{1} << unit;
-  });
-  return upper != sides_.end() ? &*upper : nullptr;
+  return sides_.is_coupled(unit) ? nullptr : &upper_side(unit);
 }
 
 SlidingMode::Drives SlidingMode::drives(std::size_t unit) const {
@@ -289,31 +358,36 @@ std::optional<double> SlidingMode::repulsion(std::size_t unit) const {
 
 /// The shares with which no event function moves, but on its way back by so much of what the sides do.
 bool SlidingMode::find_shares(double most_back) {
-  if (units_.size() == 1) return find_only_share(most_back);
-  auto found = shares_of_coupled(sides_, shares_, kReturn / span_, most_back);
-  if (!found) return false;
-  shares_ = std::move(*found);
-  return true;
-}
-
-bool SlidingMode::find_only_share(double most_back) {
-  const double below = sides_.of_unit(sides_[0].rates, 0), above = sides_.of_unit(sides_[1].rates, 0);
-  if (!std::isfinite(below - above)) return false;
-  if (below == above) {  // a slide stays as it was where its sides say nothing; none begins there
-    sides_.weigh(shares_);
-    return begun_ && std::abs(below) <= kNoDrive * strongest_[units_[0]];
+  for (const std::vector<std::size_t>& part : parts_) {
+    if (part.size() == 1) {
+      if (!find_only_share(part.front(), most_back)) return false;
+      continue;
+    }
+    auto found = shares_of_coupled(sides_, shares_, part, kReturn / span_, most_back);
+    if (!found) return false;
+    shares_ = std::move(*found);
   }
-  shares_[0] =
-      (below + way_back(sides_, 0, kReturn / span_, most_back * std::abs(below - above))) / (below - above);
-  // Where the sides hardly drive any more the way back says nothing; what follows is told by `repulsion`.
-  if (std::abs(below - above) < kNoDrive * strongest_[units_[0]])
-    shares_[0] = std::clamp(shares_[0], 0.0, 1.0);
   sides_.weigh(shares_);
   return true;
 }
 
-/// Whether the shares are about the same a moment later: those of an event function that merely stands still
-/// at this one instant are not.
+/// That of a unit on which no other one acts.
+bool SlidingMode::find_only_share(std::size_t unit, double most_back) {
+  const double below = sides_.of_unit(sides_[0].rates, unit);
+  const double above = sides_.of_unit(upper_side(unit).rates, unit);
+  if (!std::isfinite(below - above)) return false;
+  if (below == above)  // a slide stays as it was where its sides say nothing; none begins there
+    return slides_on_[unit] && std::abs(below) <= kNoDrive * strongest_[units_[unit]];
+  shares_[unit] = (below + way_back(sides_, unit, kReturn / span_, most_back * std::abs(below - above))) /
+                  (below - above);
+  // Where the sides hardly drive any more the way back says nothing; what follows is told by `repulsion`.
+  if (std::abs(below - above) < kNoDrive * strongest_[units_[unit]])
+    shares_[unit] = std::clamp(shares_[unit], 0.0, 1.0);
+  return true;
+}
+
+/// Whether the shares of what is about to slide are about the same a moment later: those of an event function
+/// that merely stands still at this one instant are not.
 bool SlidingMode::lasts(double t, std::span<const double> x) {
   constexpr double kJump = 0.01;
   const std::vector<double> now = shares_;
@@ -331,7 +405,8 @@ bool SlidingMode::lasts(double t, std::span<const double> x) {
   };
   const bool valid = look();
   bool stays = valid && !(largest_jump().value_or(0) > 0);
-  for (std::size_t u = 0; stays && u < now.size(); ++u) stays = std::abs(shares_[u] - now[u]) < kJump;
+  for (std::size_t u = 0; stays && u < now.size(); ++u)
+    stays = slides_on_[u] || std::abs(shares_[u] - now[u]) < kJump;
   shares_ = now;
   return evaluate(t, x) && stays;
 }
@@ -388,6 +463,33 @@ bool SlidingMode::is_torn(std::size_t s) const {
   };
   return std::any_of(sides_.begin(), sides_.end(),
                      [&](const SlideSide& side) { return position_on(side) != position_on(sides_[0]); });
+}
+
+std::uint32_t SlidingMode::followed_by(std::size_t s) const {
+  const std::uint32_t follower = program_.switch_structure().unit[s];
+  return *std::find_if(units_.begin(), units_.end(),
+                       [&](std::uint32_t unit) { return independent_.acts(unit, follower); });
+}
+
+std::optional<std::pair<std::uint32_t, std::uint32_t>> SlidingMode::act_together() const {
+  constexpr double kSum = 1e-12;  // of dx/dt on the sides: what rounding leaves of a sum
+  const auto at = [&](std::uint64_t bits) {
+    return std::find_if(sides_.begin(), sides_.end(),
+                        [&](const SlideSide& side) { return side.bits == bits; });
+  };
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    for (std::size_t v = 0; v < u; ++v) {
+      const std::uint64_t bit_u = std::uint64_t{1} << u, bit_v = std::uint64_t{1} << v;
+      const auto both = at(bit_u | bit_v), one = at(bit_u), other = at(bit_v);
+      if (both == sides_.end()) continue;
+      for (std::size_t i = 0; i < program_.n_states(); ++i) {
+        const double a = both->dxdt[i], b = sides_[0].dxdt[i], c = one->dxdt[i], d = other->dxdt[i];
+        const double size = std::abs(a) + std::abs(b) + std::abs(c) + std::abs(d);
+        if (std::abs(a + b - c - d) > kSum * size) return std::pair(units_[v], units_[u]);
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 bool SlidingMode::derivatives(double t, const double* x, double* dxdt) {

@@ -10,6 +10,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/edge_values.h>
 #include <oblique/solve/events/slide_sides.h>
+#include <oblique/solve/readings/independent_units.h>
 
 namespace oblique::solve {
 
@@ -21,31 +22,43 @@ namespace oblique::solve {
 /// position follow it: they are settled anew on each side. The shares α are those that keep all the event
 /// functions where they are (Filippov 1960; the equivalent control of Utkin 1992). Of several units that are
 /// coupled all combinations of sides are mixed, each with the product of its shares (Alexander and Seidman
-/// 1998); units that are not coupled are each mixed by themselves, and what they do is added.
+/// 1998); units that are not coupled are each mixed by themselves, and what they do is added. What is
+/// independent slides as it would alone: its shares are found, and it begins and ends, by itself.
 class SlidingMode {
  public:
   /// All must outlive this; `span` is the length of the run [s].
-  SlidingMode(const network::Program& program, network::Workspace& workspace, EdgeValues& edges, double span);
+  SlidingMode(const network::Program& program, network::Workspace& workspace, EdgeValues& edges,
+              IndependentUnits& independent, double span);
 
   bool active() const { return !units_.empty(); }
+  /// Ascending.
   const std::vector<std::uint32_t>& units() const { return units_; }
   /// Whether the unit of a switch slides.
   bool holds(std::size_t s) const;
   /// Whether a switch follows one that slides.
   bool follows(std::size_t s) const { return follows_[s]; }
+  /// Of each switch: whether it slides or follows.
+  std::vector<bool> taken() const;
+  /// Whether any of these acts on an algebraic loop, whose solution is then mixed.
+  bool mixes(std::size_t loop) const;
   /// Whether the event function of a switch stays at zero along with the slide, though it is not slid along.
   bool rests(std::size_t s) const { return rests_[s]; }
   void let_rest(std::size_t s) { rests_[s] = true; }
   /// It has gone its way.
   void let_go(std::size_t s) { rests_[s] = false; }
+  /// The first unit that slides on which a switch depends that follows.
+  std::uint32_t followed_by(std::size_t s) const;
   /// The switches that follow.
   const std::vector<std::uint32_t>& followers() const { return followers_; }
 
-  /// Begins to slide along the switching surfaces of `units` from (t, x), all other switches where they are.
-  /// False, with nothing changed, where no shares keep them there, now and a moment later.
-  bool begin(std::vector<std::uint32_t> units, double t, std::span<const double> x);
+  /// Begins to slide along the switching surfaces of `units` from (t, x), all other switches where they are:
+  /// beside what slides already, which must be independent of them and slides on. False, with nothing
+  /// changed, where no shares keep them there, now and a moment later.
+  bool begin(const std::vector<std::uint32_t>& units, double t, std::span<const double> x);
   /// Ends; the positions stay what they were to events.
   void end();
+  /// Ends but for `kept`, which must be independent of the others, at (t, x).
+  void keep(const std::vector<std::uint32_t>& kept, double t, std::span<const double> x);
 
   /// As those of Program. False where a loop has no solution on one of the sides.
   bool derivatives(double t, const double* x, double* dxdt);
@@ -84,6 +97,9 @@ class SlidingMode {
   double fastest() const;
   /// Whether a switch that follows is in one position on one side and in the other on another.
   bool is_torn(std::size_t s) const;
+  /// The first two units that do something to a state together that is not the sum of what each does: with
+  /// which shares of the time both are above is not said by their own shares, which are taken as independent.
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> act_together() const;
   /// How far from zero an event function that has been slid along may have drifted [as the event function].
   static double drift() { return 1e-7; }
   /// By how much more than where they bend the event functions of units jump between the sides: those that
@@ -95,6 +111,15 @@ class SlidingMode {
   double crossed(std::size_t side, std::size_t follower) const;
 
  private:
+  /// What a slide goes on by.
+  struct Kept {
+    std::vector<std::uint32_t> units;
+    std::vector<double> shares;  ///< of each of them
+    std::vector<bool> rests;     ///< of each switch
+  };
+  void resume(const Kept& kept, double t, std::span<const double> x);
+  bool make(std::vector<std::uint32_t> units, const Kept& kept, double t, std::span<const double> x);
+  bool attracts(double t, std::span<const double> x);
   void find_followers();
   bool settle(SlideSide& side, double t, std::span<const double> x);
   bool move_tables_along(double t, std::span<const double> x, bool& still);
@@ -102,7 +127,7 @@ class SlidingMode {
   void load_base();
   bool evaluate(SlideSide& side, double t, std::span<const double> x);
   bool find_shares(double most_back);
-  bool find_only_share(double most_back);
+  bool find_only_share(std::size_t unit, double most_back);
   /// Of a unit that nothing couples, the rates of its event function on its two sides.
   struct Drives {
     double above = 0, below = 0;
@@ -110,6 +135,7 @@ class SlidingMode {
     double weaker() const;
     double stronger() const;
   };
+  const SlideSide& upper_side(std::size_t unit) const;
   const SlideSide* upper_side_alone(std::size_t unit) const;
   Drives drives(std::size_t unit) const;
   double drive_apart(std::size_t unit) const;
@@ -119,8 +145,11 @@ class SlidingMode {
   const network::Program& program_;
   network::Workspace& workspace_;
   EdgeValues& edges_;
+  IndependentUnits& independent_;
   double span_;
   std::vector<std::uint32_t> units_;
+  std::vector<std::vector<std::size_t>> parts_;  ///< of `units_`: see IndependentUnits::parts_of
+  std::vector<bool> slides_on_;                  ///< of each unit: it has begun to slide
   std::vector<bool> may_jump_;  ///< of each unit: its event function depends on another that jumps
   std::vector<bool> follows_, rests_;
   std::vector<std::uint32_t> followers_;
@@ -131,7 +160,6 @@ class SlidingMode {
   // Of each unit of the program the most in all slides of the run:
   std::vector<double> strongest_;  ///< drive together
   std::vector<double> firmest_;    ///< grip
-  bool begun_ = false;
   std::vector<double> scratch_, moved_, signals_;
 };
 

@@ -31,11 +31,13 @@ bool has_unit(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
 }  // namespace
 
 SwitchSettling::SwitchSettling(const network::Program& program, network::Workspace& workspace,
-                               SlidingMode& slide, EventFunctions& event_functions,
-                               const Announced& announced, EventLog& log, double span)
+                               SlidingMode& slide, IndependentUnits& independent,
+                               EventFunctions& event_functions, const Announced& announced, EventLog& log,
+                               double span)
     : program_(program),
       workspace_(workspace),
       slide_(slide),
+      independent_(independent),
       event_functions_(event_functions),
       announced_(announced),
       log_(log),
@@ -228,13 +230,39 @@ bool SwitchSettling::is_at_level(std::uint32_t unit) const {
   return std::abs(event_functions_[s]) <= near;
 }
 
-/// Lets the solution decide where the units go that lie on their switching surfaces, together with those that
-/// slide.
-void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
+/// Lets the solution decide where the units go that lie on their switching surfaces, those together that are
+/// not independent, with those that slide; what slides beside them slides on. One for which nothing agrees as
+/// long as others have not settled comes after these; where none can be the first, all are decided together.
+void SwitchSettling::decide(const Units& units, double t, std::span<const double> x) {
+  Units all = units, kept;
   for (const std::uint32_t unit : slide_.units()) {
-    if (!has_unit(units, unit)) units.push_back(unit);
+    if (!has_unit(units, unit)) all.push_back(unit);
   }
-  slide_.end();
+  std::vector<Units> left;
+  for (const std::vector<std::size_t>& part : independent_.parts_of(all)) {
+    // The units to be decided stand before the others.
+    Units& together = part.front() < units.size() ? left.emplace_back() : kept;
+    for (const std::size_t place : part) together.push_back(all[place]);
+  }
+  slide_.keep(kept, t, x);
+  while (!left.empty()) {
+    const auto first = std::find_if(left.begin(), left.end(),
+                                    [&](const Units& together) { return decide_together(together, t, x); });
+    if (first != left.end()) {
+      left.erase(first);
+      continue;
+    }
+    Units together;
+    for (const Units& part : left) together.insert(together.end(), part.begin(), part.end());
+    const bool one = left.size() == 1;
+    if (one || !decide_together(together, t, x)) throw no_position(members_of(together).front(), t);
+    return;
+  }
+}
+
+/// False, with nothing changed, where nothing agrees.
+bool SwitchSettling::decide_together(const Units& units, double t, std::span<const double> x) {
+  event_functions_.evaluate(t, x, announced_);
   std::vector<double> preferred(event_functions_.size());
   Units may_stop;
   for (const std::uint32_t unit : units) {
@@ -247,9 +275,11 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
   event_functions_.weigh_errors();
   if (!positions_.choose(units, preferred, may_stop, event_functions_.here(), t, x) &&
       !choose_beside_slide(units, preferred, may_stop, t, x)) {
-    const std::vector<std::uint32_t> members = members_of(units);
-    if (units.size() > Positions::kMostUnits || !choose_restless(members, {}, t, x))
-      throw no_position(members.front(), t);
+    if (units.size() > Positions::kMostUnits || !choose_restless(members_of(units), {}, t, x)) {
+      for (std::size_t s = 0; s < before.size(); ++s)
+        workspace_.set_discrete_state(program_.switches()[s].discrete_state, before[s]);
+      return false;
+    }
   }
   note_choice(t, x);
   for (std::size_t s = 0; s < before.size(); ++s) {  // those that turned over count
@@ -257,6 +287,7 @@ void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
     workspace_.set_discrete_state(program_.switches()[s].discrete_state, before[s]);
     turn(s, chosen, t);
   }
+  return true;
 }
 
 std::vector<std::uint32_t> SwitchSettling::members_of(const Units& units) const {
@@ -363,6 +394,11 @@ void SwitchSettling::begin_instant() {
 }
 
 void SwitchSettling::begin() {
+  begin({}, 0, {});
+}
+
+/// The units `kept` slide on, and what rests along with them is decided.
+void SwitchSettling::begin(const Units& kept, double t, std::span<const double> x) {
   decided_.assign(decided_.size(), false);
   if (!kept_.empty()) decided_.swap(kept_);
   kept_.clear();
@@ -371,15 +407,48 @@ void SwitchSettling::begin() {
   for (std::size_t s = 0; s < rested_.size(); ++s)
     rested_[s] = slide_.rests(s) || (s < restored_.size() && restored_[s]);
   restored_.clear();
-  slide_.end();
+  slide_.keep(kept, t, x);
+  for (std::size_t s = 0; s < rested_.size(); ++s) {
+    if (slide_.rests(s)) decided_[program_.switch_structure().unit[s]] = true;
+  }
 }
 
-void SwitchSettling::begin_after_events(bool set_states, bool jumped) {
-  begin();
+void SwitchSettling::begin_beside_slides(double t, std::span<const double> x) {
+  Units all, kept;
+  for (std::uint32_t s = 0; s < announced_.size(); ++s) {
+    const std::uint32_t unit = program_.switch_structure().unit[s];
+    if (announced_[s] && !has_unit(all, unit)) all.push_back(unit);
+  }
+  const std::size_t due = all.size();
+  for (const std::uint32_t unit : slide_.units()) {
+    if (!has_unit(all, unit)) all.push_back(unit);
+  }
+  if (due > 0 && due < all.size()) {
+    for (const std::vector<std::size_t>& part : independent_.parts_of(all)) {
+      if (part.front() < due) continue;
+      for (const std::size_t place : part) kept.push_back(all[place]);
+    }
+  }
+  begin(kept, t, x);
+}
+
+void SwitchSettling::begin_after_events(const std::vector<std::size_t>& events, bool set_states, bool jumped,
+                                        double t, std::span<const double> x) {
+  const Units& slides = slide_.units();
+  Units kept;
+  for (const std::vector<std::size_t>& part : independent_.parts_of(slides)) {
+    const bool is_acted_on = std::any_of(part.begin(), part.end(), [&](std::size_t place) {
+      return std::any_of(events.begin(), events.end(), [&](std::size_t event) {
+        return independent_.acts(program_.events()[event], slides[place]);
+      });
+    });
+    for (std::size_t k = 0; k < part.size() && !is_acted_on; ++k) kept.push_back(slides[part[k]]);
+  }
+  begin(kept, t, x);
   set_ = set_ || set_states;
   if (!jumped) return;
-  slid_.clear();
-  std::fill(rested_.begin(), rested_.end(), false);
+  slid_ = slide_.units();
+  for (std::size_t s = 0; s < rested_.size(); ++s) rested_[s] = slide_.rests(s);
 }
 
 void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {

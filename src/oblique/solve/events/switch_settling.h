@@ -26,7 +26,8 @@ class SwitchSettling {
   /// `announced` are the switches that are due, by time or by a crossing that was located; `span` is the
   /// length of the run [s]. All must outlive this.
   SwitchSettling(const network::Program& program, network::Workspace& workspace, SlidingMode& slide,
-                 EventFunctions& event_functions, const Announced& announced, EventLog& log, double span);
+                 IndependentUnits& independent, EventFunctions& event_functions, const Announced& announced,
+                 EventLog& log, double span);
 
   /// Tells, where all has been settled at the start, whether a switch could as well stand on its other side.
   void tell_of_open(double t, std::span<const double> x);
@@ -35,8 +36,13 @@ class SwitchSettling {
   /// Begins to settle: what lies on its switching surface is decided anew, and what slides is looked at as if
   /// it came there now.
   void begin();
-  /// The same after events at this instant, that have set states, which may have jumped with that.
-  void begin_after_events(bool set_states, bool jumped);
+  /// The same at (t, x), where switches are due that were announced: what slides independently of these
+  /// slides on.
+  void begin_beside_slides(double t, std::span<const double> x);
+  /// The same after `events` at this instant, that have set states, which may have jumped with that: what
+  /// slides slides on where they do not act on it.
+  void begin_after_events(const std::vector<std::size_t>& events, bool set_states, bool jumped, double t,
+                          std::span<const double> x);
   /// All switches to a fixed point; true where any turned over. Throws SolveError where there is none.
   bool settle(double t, std::span<const double> x);
   /// The instant is settled; before it these units slid.
@@ -77,7 +83,9 @@ class SwitchSettling {
   void turn_in_order(double t, std::span<const double> x);
   void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
   bool is_at_level(std::uint32_t unit) const;
-  void decide(Units units, double t, std::span<const double> x);
+  void begin(const Units& kept, double t, std::span<const double> x);
+  void decide(const Units& units, double t, std::span<const double> x);
+  bool decide_together(const Units& units, double t, std::span<const double> x);
   std::vector<std::uint32_t> members_of(const Units& units) const;
   bool choose_beside_slide(const Units& units, const std::vector<double>& preferred, const Units& may_stop,
                            double t, std::span<const double> x);
@@ -88,6 +96,7 @@ class SwitchSettling {
   const network::Program& program_;
   network::Workspace& workspace_;
   SlidingMode& slide_;
+  IndependentUnits& independent_;
   EventFunctions& event_functions_;
   const Announced& announced_;
   EventLog& log_;

@@ -26,15 +26,17 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
       tolerance_(tolerance),
       log_(program, file),
       edges_(program, workspace, span),
-      slide_(program, workspace, edges_, span),
+      independent_(program),
+      slide_(program, workspace, edges_, independent_, span),
       event_functions_(program, workspace, tolerance, absolute_tolerance, file),
       location_(program, workspace, slide_, event_functions_, span, file),
-      settling_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
+      settling_(program, workspace, slide_, independent_, event_functions_, location_.announced(), log_,
+                span),
       resting_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
       wrong_sides_(program, workspace, slide_, settling_, event_functions_, log_, span),
       actions_(program, workspace, event_functions_, slide_, settling_, log_, span, file),
       faint_turns_(program, workspace, span),
-      loop_jumps_(program, workspace, event_functions_.thresholds()) {
+      loop_jumps_(program, workspace, slide_, event_functions_.thresholds()) {
   loop_jumps_.begin();
 }
 
@@ -78,7 +80,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     starting = starting && (!effect || effect->tables);
     takes = takes && (!effect || !effect->sets_states);
     if (effect) return true;
-    return std::exchange(loops_go, false) && !slide_.active() && loop_jumps_.settle(t, x);
+    return std::exchange(loops_go, false) && loop_jumps_.settle(t, x);
   };
   Circle circle;
   for (int round = 0;; ++round) {
@@ -134,8 +136,8 @@ std::optional<EventActions::Effect> Switching::serve_events(double t, std::vecto
   const auto effect = actions_.serve(t, x, starting);
   hops_ = effect && effect->tables ? hops_ + 1 : 0;
   if (!effect) return effect;
-  if (hops_ == kManyHops && !slide_.active()) loop_jumps_.settle(t, x);
-  settling_.begin_after_events(effect->sets_states, effect->jumps);
+  if (hops_ == kManyHops) loop_jumps_.settle(t, x);
+  settling_.begin_after_events(effect->events, effect->sets_states, effect->jumps, t, x);
   event_functions_.evaluate(t, x, location_.announced());
   if (effect->jumps) event_functions_.take_slack_since(before);
   location_.withdraw_past(t, effect->jumps);
@@ -160,7 +162,7 @@ void Switching::record_turns(const std::vector<double>& before, double t) {
 void Switching::settle_switches(double t, std::span<const double> x) {
   settling_.settle(t, x);
   if (!loop_jumps_.any()) return;
-  if (!slide_.active() && loop_jumps_.settle(t, x)) settling_.settle(t, x);
+  if (loop_jumps_.settle(t, x)) settling_.settle(t, x);
   loop_jumps_.note(t, x);
   event_functions_.evaluate(t, x, location_.announced());
 }
@@ -169,7 +171,10 @@ void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<std::uint32_t> slid = slide_.units();
   const std::vector<SlidingMode::Doubt> doubts = doubts_of_slide(t, x);
   loop_jumps_.note(t, x);
-  settling_.begin();
+  if (location_.slide_changes())
+    settling_.begin();
+  else
+    settling_.begin_beside_slides(t, x);
   event_functions_.evaluate(t, x, location_.announced());
   settling_.begin_instant();
   location_.withdraw_early(t);
@@ -264,7 +269,7 @@ bool Switching::look_at_hidden(double t, const Interpolant& solution) {
 /// would have had an effect.
 void Switching::look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution) {
   const std::uint32_t s = miss.number;
-  if (program_.switches()[s].turning != network::Turning::jumps || slide_.active() ||
+  if (program_.switches()[s].turning != network::Turning::jumps || slide_.holds(s) || slide_.follows(s) ||
       faint_turns_.is_known(s) ||
       is_masked(program_.switch_structure().masks[s], workspace_.discrete_states()))
     return;
@@ -316,8 +321,8 @@ bool Switching::inside(double t, std::span<const double> values, const Evaluate&
 }
 
 bool Switching::derivatives(double t, const double* x, double* dxdt) {
-  if (slide_.active()) return slide_.derivatives(t, x, dxdt);
   const std::span<double> values(dxdt, program_.n_states());
+  if (slide_.active()) return inside(t, values, [&](double at) { return slide_.derivatives(at, x, dxdt); });
   if (!inside(t, values, [&](double at) { return program_.derivatives(at, x, dxdt, workspace_); }))
     return false;
   edges_.complete_derivatives(t, x, values);
@@ -344,8 +349,8 @@ void Switching::mark_held(double t, const double* x, std::vector<bool>& held) {
 }
 
 bool Switching::jacobian(double t, const double* x, double* values) {
-  if (slide_.active()) return slide_.jacobian(t, x, values);
   const std::span<double> entries(values, program_.jacobian_pattern().entries());
+  if (slide_.active()) return inside(t, entries, [&](double at) { return slide_.jacobian(at, x, values); });
   if (!inside(t, entries, [&](double at) { return program_.jacobian(at, x, values, workspace_); }))
     return false;
   edges_.complete_jacobian(t, x, entries);
@@ -354,8 +359,8 @@ bool Switching::jacobian(double t, const double* x, double* values) {
 
 bool Switching::signals(double t, const double* x, double* values) {
   interruption_.check();
-  if (slide_.active()) return slide_.signals(t, x, values);
   const std::span<double> all(values, program_.n_signals());
+  if (slide_.active()) return inside(t, all, [&](double at) { return slide_.signals(at, x, values); });
   if (!inside(t, all, [&](double at) { return program_.signals(at, x, values, workspace_).has_value(); }))
     return false;
   edges_.complete_signals(t, x, all);

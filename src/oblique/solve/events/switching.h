@@ -23,6 +23,7 @@
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/interruption.h>
 #include <oblique/solve/readings/event_functions.h>
+#include <oblique/solve/readings/independent_units.h>
 
 namespace oblique::solve {
 
@@ -122,6 +123,8 @@ class Switching {
   void end(double t) { actions_.end(t); }
 
   bool slides() const { return slide_.active(); }
+  /// Whether what slides mixes the solution of an algebraic loop.
+  bool mixes(std::size_t loop) const { return slide_.mixes(loop); }
   /// Marks the states that the event functions read of what slides at (t, x).
   void mark_held(double t, const double* x, std::vector<bool>& held);
   const network::Workspace& workspace() const { return workspace_; }
@@ -160,6 +163,7 @@ class Switching {
   Interruption interruption_;
   EventLog log_;
   EdgeValues edges_;
+  IndependentUnits independent_;
   SlidingMode slide_;
   EventFunctions event_functions_;
   EventLocation location_;

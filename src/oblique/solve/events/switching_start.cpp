@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/operating_point/rest.h>
 #include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 
@@ -80,6 +81,7 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
 bool rests_within_limits(const network::Program& program, network::Workspace& workspace,
                          EventFunctions& event_functions, const Announced& announced, double t,
                          std::vector<double>& x, const std::function<void()>& bring_to_rest) {
+  if (rest_states(program).empty()) return false;  // a loop without any keeps to the limit at which it begins
   const std::vector<double> states = x;
   const std::vector<double> discrete_states(workspace.discrete_states().begin(),
                                             workspace.discrete_states().end());

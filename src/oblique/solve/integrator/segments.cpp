@@ -49,7 +49,8 @@ void Segments::settle(double t, bool at_branch_end) {
   parts_.switching.settle(t, parts_.states);
   follow_phases(t);
   parts_.workspace.follow_branches(true);
-  if (!parts_.switching.slides()) parts_.branches.look(t, parts_.states, false);
+  parts_.branches.look(t, parts_.states, false,
+                       [this](std::size_t loop) { return parts_.switching.mixes(loop); });
 }
 
 /// Whether a switch turns over between `from` and t, where a branch of an algebraic loop has ended; t is
@@ -169,15 +170,14 @@ Segments::Passed Segments::pass(double& t) {
 }
 
 /// dx/dt at t and within the step before, with the discrete states as they are now; nothing where there is
-/// none, or a slide.
+/// none.
 std::vector<double> Segments::rates_behind(double t) {
   const std::size_t n = parts_.states.size();
   std::vector<double> states(n), rates(n), all;
   for (const double part : {0.5, kSoon, 0.0}) {
     const double time = t - part * (t - step_.begin);
     step_.solution->states_at(time, states);
-    if (parts_.switching.slides() || !parts_.switching.derivatives(time, states.data(), rates.data()))
-      return {};
+    if (!parts_.switching.derivatives(time, states.data(), rates.data())) return {};
     all.insert(all.end(), rates.begin(), rates.end());
   }
   return all;
@@ -237,7 +237,7 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
                                     const Interpolant& solution) {
   std::vector<std::vector<double>> states_there, before;
   std::vector<double> after(parts_.states.size());
-  bool known = !parts_.switching.slides();
+  bool known = true;
   std::vector<double> times(sample_times.begin(), sample_times.end());
   if (!memories_act_) times.insert(times.begin(), {at + kSoon * (step_.end - at), at + (step_.end - at) / 2});
   for (const double time : times) {
@@ -250,7 +250,7 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
   solution.states_at(at, parts_.states);
   const std::vector<double> states = parts_.states;
   settle(at, false);
-  if (!known || parts_.switching.slides() || parts_.states != states) return false;
+  if (!known || parts_.states != states) return false;
   for (const network::Switch& s : parts_.program.switches())
     discrete_states[s.discrete_state] = parts_.workspace.discrete_state(s.discrete_state);
   const std::span<const double> now = parts_.workspace.discrete_states();

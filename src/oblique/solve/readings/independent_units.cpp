@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include <oblique/solve/readings/independent_units.h>
+
+#include <algorithm>
+
+namespace oblique::solve {
+
+const network::SwitchStructure::Ancestry& IndependentUnits::ancestry(std::uint32_t unit) {
+  auto& known = ancestries_[unit];
+  if (!known) known = program_.switch_structure().ancestry(unit, program_.events());
+  return *known;
+}
+
+bool IndependentUnits::acts(std::uint32_t unit, std::uint32_t on) {
+  const auto& positions = ancestry(on).discrete_states;
+  const auto& members = program_.switch_structure().members[unit];
+  return std::any_of(members.begin(), members.end(),
+                     [&](std::uint32_t s) { return positions[program_.switches()[s].discrete_state]; });
+}
+
+bool IndependentUnits::acts(const network::Event& event, std::uint32_t on) {
+  const network::SwitchStructure::Ancestry& below = ancestry(on);
+  return std::any_of(event.actions.begin(), event.actions.end(), [&](const network::Event::Action& action) {
+    return action.on_state ? below.states[action.index] : below.discrete_states[action.index];
+  });
+}
+
+bool IndependentUnits::are(std::uint32_t unit_a, std::uint32_t unit_b) {
+  return unit_a != unit_b && !acts(unit_a, unit_b) && !acts(unit_b, unit_a);
+}
+
+std::vector<std::vector<std::size_t>> IndependentUnits::parts_of(std::span<const std::uint32_t> units) {
+  std::vector<std::size_t> part_of(units.size());
+  for (std::size_t u = 0; u < units.size(); ++u) {
+    part_of[u] = u;
+    for (std::size_t v = 0; v < u; ++v) {
+      if (part_of[v] == part_of[u] || are(units[u], units[v])) continue;
+      const std::size_t first = std::min(part_of[u], part_of[v]), second = std::max(part_of[u], part_of[v]);
+      std::replace(part_of.begin(), part_of.begin() + static_cast<std::ptrdiff_t>(u) + 1, second, first);
+    }
+  }
+  std::vector<std::vector<std::size_t>> parts(units.size());
+  for (std::size_t u = 0; u < units.size(); ++u) parts[part_of[u]].push_back(u);
+  std::erase_if(parts, [](const auto& part) { return part.empty(); });
+  return parts;
+}
+
+}  // namespace oblique::solve
