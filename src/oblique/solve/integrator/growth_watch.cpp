@@ -43,9 +43,13 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings)
       held_since_(system.size()) {}
 
 void GrowthWatch::restart(double t, std::span<const double> x) {
+  if (before_.empty()) judged_ = t;
+  // Where segments are short, growth goes on through many of them: but for that of states that have jumped.
+  for (std::size_t i = 0; i < before_.size(); ++i) {
+    if (!(std::abs(x[i] - before_[i]) < near_distance(i, x[i]))) growth_[i] = 0;
+  }
   before_.assign(x.begin(), x.end());
-  time_ = judged_ = t;
-  steps_ = 0;
+  time_ = t;
 }
 
 double GrowthWatch::near_distance(std::size_t i, double x) const {
@@ -66,19 +70,23 @@ bool GrowthWatch::is_near_rest(std::span<const double> x) {
 }
 
 void GrowthWatch::advance(double t, std::span<const double> x) {
-  const double step = t - time_;
+  step_ = t - time_;
   const bool near = is_near_rest(x);
   time_ = t;
   if (!near) {
     std::fill(growth_.begin(), growth_.end(), 0.0);
     judged_ = t;
-  } else if (++steps_ >= kStepsBetween || step > kLonger * judged_step_) {
-    judge(t, x, step);
+  } else if (++steps_ >= kStepsBetween || step_ > kLonger * judged_step_) {
+    judge(t, x, step_);
     judged_ = t;
-    judged_step_ = step;
+    judged_step_ = step_;
     steps_ = 0;
   }
   std::copy(x.begin(), x.end(), before_.begin());
+}
+
+void GrowthWatch::end() {
+  if (steps_ > 0 && std::find(near_.begin(), near_.end(), true) != near_.end()) judge(time_, before_, step_);
 }
 
 /// Whether a mode of these states grows about as fast as the Jacobian says. That of a slide does not: it

@@ -35,6 +35,9 @@ class GrowthWatch {
   /// Looks at the step to (t, x).
   void advance(double t, std::span<const double> x);
 
+  /// Looks at the end of the run at what has not been judged.
+  void end();
+
   /// The first growth of each state that was not seen.
   const std::vector<UnseenGrowth>& found() const { return found_; }
 
@@ -52,7 +55,7 @@ class GrowthWatch {
   std::vector<double> growth_;    ///< of each state, in powers of e, while it is near an unstable equilibrium
   std::vector<double> distance_;  ///< the least since then
   std::vector<bool> near_;
-  double time_ = 0, judged_ = 0, judged_step_ = 0;
+  double time_ = 0, step_ = 0, judged_ = 0, judged_step_ = 0;
   int steps_ = 0;                 ///< since it was judged
   long looked_ = 0;               ///< Jacobians
   std::vector<bool> told_;        ///< of each state, whether it is among `found_`

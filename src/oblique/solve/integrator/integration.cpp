@@ -94,7 +94,7 @@ bool Integration::take_step(double& t) {
 void Integration::look_for_stiffness(double t) {
   constexpr int kHeldOrder = 2;
   if (settings_.method != diagram::IntegrationMethod::adams || parts_.sensitivities ||
-      parts_.options.method != diagram::IntegrationMethod::automatic || parts_.switching.slides())
+      parts_.options.method != diagram::IntegrationMethod::automatic)
     return;
   low_steps_ = cvodes_->last_order() <= kHeldOrder ? low_steps_ + 1 : 0;
   if (low_steps_ < next_look_) return;
@@ -133,6 +133,7 @@ void Integration::end_step(Segments::Passed passed, double t) {
 }
 
 void Integration::end(double t) {
+  growth_.end();
   small_.end(t, parts_.states);
   lost_.end(t, parts_.states);
 }

@@ -21,6 +21,9 @@ constexpr double kErrors = 10;
 constexpr double kNoDigit = 0.3;
 /// Of the relative tolerance, in machine units: outputs that are smaller mean zero.
 constexpr double kLeast = 1e4;
+/// Of the relative tolerance, of its largest magnitude: what a state that has decayed to its errors may move
+/// an output by (the logarithm of a decay).
+constexpr double kMuchByDecayed = 1e4;
 
 }  // namespace
 
@@ -46,8 +49,13 @@ double LostOutputs::error_of_state(std::size_t i, double x) const {
 
 /// Whether what the states were moved by has taken the last digit of an output.
 bool LostOutputs::is_lost(std::size_t output) const {
+  return is_moved_by(output, kNoDigit);
+}
+
+/// Whether it has moved an output by this part of its largest magnitude.
+bool LostOutputs::is_moved_by(std::size_t output, double part) const {
   return std::abs(moved_[output] - values_[output]) >
-         std::max(kNoDigit * sizes_[output], kLeast * settings_.relative_tolerance);
+         std::max(part * sizes_[output], kLeast * settings_.relative_tolerance);
 }
 
 void LostOutputs::advance(double t, std::span<const double> x) {
@@ -62,7 +70,7 @@ void LostOutputs::begin_segment(double t, std::span<const double> x) {
 }
 
 void LostOutputs::look(double t, std::span<const double> x) {
-  bool any_lost = false;
+  bool any_moved = false;
   if (!outputs_(t, x.data(), values_.data())) return;
   for (std::size_t k = 0; k < values_.size(); ++k) sizes_[k] = std::max(sizes_[k], std::abs(values_[k]));
   off_states_.resize(x.size());
@@ -71,17 +79,16 @@ void LostOutputs::look(double t, std::span<const double> x) {
     for (std::size_t i = 0; i < x.size(); ++i) off_states_[i] = x[i] + signs.next() * error_of_state(i, x[i]);
     if (!outputs_(t, off_states_.data(), moved_.data())) continue;
     for (std::size_t k = 0; k < values_.size(); ++k) {
-      if (losses_[k].time >= 0 || !is_lost(k)) continue;
-      losses_[k] = {t, values_[k], std::abs(moved_[k] - values_[k])};
-      any_lost = true;
+      any_moved = any_moved || is_moved_by(k, kMuchByDecayed * settings_.relative_tolerance);
+      if (losses_[k].time < 0 && is_lost(k)) losses_[k] = {t, values_[k], std::abs(moved_[k] - values_[k])};
     }
   }
-  if (any_lost) find_decayed(t, x);
+  if (any_moved) find_decayed(t, x);
   outputs_(t, x.data(), values_.data());  // leaves the solutions of algebraic loops where they were
 }
 
-/// Looks which states are within their errors, hardly move, and take the last digit of an output by
-/// themselves. One that crosses zero moves, and is known as it was.
+/// Looks which states are within their errors, hardly move, and move an output by much by themselves. One
+/// that crosses zero moves, and is known as it was.
 void LostOutputs::find_decayed(double t, std::span<const double> x) {
   constexpr double kSoon = 1e-3;  // of the run
   std::vector<double> rates(x.size());
@@ -94,7 +101,7 @@ void LostOutputs::find_decayed(double t, std::span<const double> x) {
       off_states_[i] = x[i] + off;
       if (!outputs_(t, off_states_.data(), moved_.data())) continue;
       for (std::size_t k = 0; k < values_.size(); ++k) {
-        if (is_lost(k)) decayed_.insert(i);
+        if (is_moved_by(k, kMuchByDecayed * settings_.relative_tolerance)) decayed_.insert(i);
       }
     }
     off_states_[i] = x[i];

@@ -38,7 +38,7 @@ class LostOutputs {
 
   /// One warning about each that had no known digit once, but for those that are `told` of already.
   std::vector<text::Diagnostic> warnings(const std::vector<bool>& told) const;
-  /// The states that had decayed to their errors where these took the last digit from an output.
+  /// The states that had decayed to their errors where these moved an output by much.
   const std::set<std::size_t>& decayed() const { return decayed_; }
 
  private:
@@ -50,6 +50,7 @@ class LostOutputs {
   double absolute_tolerance(std::size_t i) const;
   double error_of_state(std::size_t i, double x) const;
   bool is_lost(std::size_t output) const;
+  bool is_moved_by(std::size_t output, double part) const;
   void find_decayed(double t, std::span<const double> x);
   void look(double t, std::span<const double> x);
 
