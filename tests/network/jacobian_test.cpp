@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <ostream>
 
 #include <gtest/gtest.h>
@@ -258,6 +259,32 @@ TEST_P(JacobianTest, AgreesWithDifferencesOfTheClosedForm) {
 
 INSTANTIATE_TEST_SUITE_P(Diagrams, JacobianTest, ::testing::ValuesIn(kCases),
                          [](const auto& tested) { return tested.param.name; });
+
+// 1/(1 + e^x) has the slope zero where e^x is no number any more, and x/(1 + e^x) too; below it is what
+// calculus says. What has no value at all keeps none.
+TEST(Jacobian, HasNumbersWhereTheDerivativesHave) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("falling", R"toml([inputs]
+in = { doc = "in" }
+[outputs]
+out = { doc = "out" }
+[equations]
+out = "in/(1 + exp(in))"
+)toml");
+  const Compiled made(R"toml(u = { type = "falling", in = "x" }
+x = { type = "integrator", in = ["u", "-3*x"] }
+)toml",
+                      "", library);
+  Workspace workspace(made.program);
+  const auto slope_at = [&](double x) {
+    double value = 0;
+    EXPECT_TRUE(made.program.jacobian(0, &x, &value, workspace));
+    return value;
+  };
+  const double e = std::exp(2.0);
+  EXPECT_NEAR(slope_at(2), 1 / (1 + e) - 2 * e / ((1 + e) * (1 + e)) - 3, 1e-14);  // rounding
+  EXPECT_NEAR(slope_at(800), -3, 1e-5);  // a difference over 8e-5 of values of 2400, known to rounding
+  EXPECT_FALSE(std::isfinite(slope_at(-std::numeric_limits<double>::infinity())));
+}
 
 }  // namespace
 }  // namespace oblique::network

@@ -154,6 +154,31 @@ bool Program::differentiate_loops(Workspace& workspace) const {
   return true;
 }
 
+/// Takes from differences the columns in which an entry has no value, though the derivatives have: 1/(1 +
+/// e^x) is next to nothing where e^x has no number any more.
+void Program::complete_jacobian(double t, const double* x, double* values, Workspace& workspace) const {
+  constexpr double kStep = 1e-7;  // about the root of rounding, of a machine unit or of the state
+  const auto all_known = [values](auto begin, auto end) {
+    return std::all_of(values + begin, values + end, [](double value) { return std::isfinite(value); });
+  };
+  if (all_known(std::size_t{0}, code_->pattern.entries())) return;
+  const std::size_t n = code_->states.size();
+  std::vector<double> moved(x, x + n), here(n), there(n);
+  copy_derivatives(workspace, here.data());
+  for (std::size_t column = 0; column < n; ++column) {
+    const auto begin = code_->pattern.column_starts[column], end = code_->pattern.column_starts[column + 1];
+    if (all_known(begin, end)) continue;
+    moved[column] += kStep * std::max(1.0, std::abs(x[column]));
+    const bool known = derivatives(t, moved.data(), there.data(), workspace);
+    for (auto k = begin; known && k < end; ++k) {
+      const auto row = static_cast<std::size_t>(code_->pattern.rows[static_cast<std::size_t>(k)]);
+      if (!std::isfinite(values[k])) values[k] = (there[row] - here[row]) / (moved[column] - x[column]);
+    }
+    moved[column] = x[column];
+  }
+  load_and_run(t, x, workspace);
+}
+
 bool Program::jacobian(double t, const double* x, double* values, Workspace& workspace) const {
   if (!load_and_run(t, x, workspace)) return false;
   double* const slots = workspace.slots_.data();
@@ -172,6 +197,7 @@ bool Program::jacobian(double t, const double* x, double* values, Workspace& wor
           slots[coupling.slot] * dz_dx(coupling.unknown, k);
     }
   }
+  complete_jacobian(t, x, values, workspace);
   return true;
 }
 

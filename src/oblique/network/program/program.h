@@ -25,7 +25,8 @@ class ParameterSetting;
 class Workspace;
 
 /// The equations of a diagram, compiled: immutable, and shared between threads as long as each has a
-/// Workspace. Nothing allocates inside `derivatives`, `jacobian` and `signals`.
+/// Workspace. Nothing allocates inside `derivatives`, `signals` and, where every entry has a value,
+/// `jacobian`.
 class Program {
  public:
   /// Compiles a network: differentiates, shares and drops expressions, lays out the tape.
@@ -120,6 +121,7 @@ class Program {
   bool run(const std::vector<ProgramCode::Step>& steps, Workspace& workspace) const;
   bool load_and_run(double t, const double* x, Workspace& workspace) const;
   bool differentiate_loops(Workspace& workspace) const;
+  void complete_jacobian(double t, const double* x, double* values, Workspace& workspace) const;
   void copy_derivatives(const Workspace& workspace, double* dxdt) const;
 
   std::shared_ptr<const ProgramCode> code_;

@@ -70,11 +70,37 @@ std::vector<double> factors_by_states(const ExpressionGraph& graph,
   return factors;
 }
 
+/// Of each node of how many peaks it is a sum or a product, with constants, and of nothing else that moves:
+/// two of them may make a peak where each only goes from one level to another.
+std::vector<std::size_t> peaks_in(const ExpressionGraph& graph, const std::function<bool(NodeId)>& is_peak,
+                                  const std::function<bool(NodeId)>& is_constant) {
+  std::vector<std::size_t> peaks(graph.size());
+  for (NodeId id = 0; id < graph.size(); ++id) {
+    const Node& node = graph[id];
+    if (is_peak(id)) {
+      peaks[id] = 1;
+      continue;
+    }
+    const bool combines = node.op == Op::add || node.op == Op::subtract || node.op == Op::negate ||
+                          node.op == Op::multiply || (node.op == Op::divide && is_constant(node.b));
+    std::size_t sum = 0;
+    bool pure = combines;
+    for (int i = 0; i < operand_count(node.op) && pure; ++i) {
+      pure = peaks[node.operand(i)] > 0 || is_constant(node.operand(i));
+      sum += peaks[node.operand(i)];
+    }
+    peaks[id] = pure ? sum : 0;
+  }
+  return peaks;
+}
+
 /// The largest parts of the equations made by functions that can be next to nothing here and a peak there, of
-/// states that a solver follows (of sums, short products, sines and cosines of those it sees what they do).
+/// states that a solver follows (of sums, short products, sines and cosines of those it sees what they do);
+/// and, besides, the largest that several of them make.
 void find_peaks(Compilation& c, const std::vector<bool>& acts, const std::vector<bool>& clocks,
-                const std::function<bool(NodeId)>& follows_states) {
+                const std::vector<Follows>& follows) {
   const ExpressionGraph& graph = c.network.graph;
+  const auto follows_states = [&](NodeId id) { return follows[id] == Follows::states; };
   std::vector<bool> by_unknowns(graph.size()), covered(graph.size()), reached(graph.size());
   for (NodeId id = 0; id < graph.size(); ++id) {
     const Node& node = graph[id];
@@ -90,13 +116,21 @@ void find_peaks(Compilation& c, const std::vector<bool>& acts, const std::vector
     const text::OperationInfo& info = text::info_of(*operation);
     return info.is(text::kPeaks) || (info.is(text::kPeaksByDivisor) && follows_states(node.b));
   };
+  const auto can_peak = [&](NodeId id) {
+    return follows_states(id) && !by_unknowns[id] && makes_peaks(graph[id]);
+  };
+  const std::vector<std::size_t> peaks =
+      peaks_in(graph, can_peak, [&](NodeId id) { return follows[id] == Follows::nothing; });
+  std::vector<bool> together(graph.size());  // with others of which it makes a peak
   for (auto id = static_cast<NodeId>(graph.size()); id-- > 0;) {
     const Node& node = graph[id];
-    const bool peak = acts[id] && !covered[id] && follows_states(id) && !by_unknowns[id] && makes_peaks(node);
-    if (peak) c.sources.push_back({id, id, true, true, std::nullopt, {}});
+    const bool peak = acts[id] && !covered[id] && can_peak(id);
+    const bool makes_one = acts[id] && !covered[id] && !together[id] && peaks[id] > 1;
+    if (peak || makes_one) c.sources.push_back({id, id, true, true, std::nullopt, {}});
     for (int i = 0; i < operand_count(node.op); ++i) {
       const NodeId child = node.operand(i);
       covered[child] = covered[child] || covered[id] || peak;
+      together[child] = together[child] || together[id] || makes_one;
       reached[child] = reached[child] || reached[id] || peak;
     }
     const bool state = node.op == Op::variable && c.is_state(node.variable);
@@ -314,7 +348,7 @@ void find_sources(Compilation& c) {
       if (follows[id] == Follows::states && follows[child] == Follows::time) is_root[child] = true;
     }
   }
-  find_peaks(c, acts, clocks, [&](NodeId id) { return follows[id] == Follows::states; });
+  find_peaks(c, acts, clocks, follows);
   Tangents derivatives(graph, [&](std::uint32_t variable) {
     return variable == 0 ? graph.constant(1) : c.network.states[variable - 1].derivative;
   });
