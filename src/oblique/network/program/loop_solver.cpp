@@ -19,6 +19,10 @@ constexpr double kSmallestFraction = 1e-9;  ///< of a Newton step, below which t
 /// along a longer one that does not, there is no solution.)
 constexpr double kNoise = 1e-8;
 
+/// A way along which another branch may lie: of 1 + |z| where there was no solution before, else of a machine
+/// unit, since branches may be as near to each other far from zero.
+constexpr double kLongWay = 0.05;
+
 /// Beside this many times the derivatives of an equation, an amplifier's own motion is all there is.
 constexpr double kInstant = 1e15;
 
@@ -72,10 +76,13 @@ double magnitude(double z) {
 
 LoopWorkspace::LoopWorkspace(std::size_t size)
     : matrix_(size),
+      beside_(size),
       step_(eigen_index(size), 1),
       start_(eigen_index(size)),
       origin_(eigen_index(size)),
       target_(eigen_index(size)),
+      end_(eigen_index(size)),
+      between_(eigen_index(size)),
       held_(size) {}
 
 void LoopWorkspace::reset() {
@@ -119,8 +126,8 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
 }
 
 /// Newton's method, which keeps to the side of a pole on which it begins, and from solution to solution to
-/// the sign of the determinant of dg/dz, as long as there is such a solution: between two branches lies a
-/// fold, or a pole.
+/// the sign of the determinant of dg/dz, there and on the way, as long as there is such a solution: between
+/// two branches lies a fold, or a pole. (Two that lie a period apart have the same sign.)
 LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<const Instruction> body,
                                             double* slots) {
   const bool known = solved_;
@@ -133,8 +140,11 @@ LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<cons
   }
   solved_ = search.failure == LoopFailure::none;
   if (!solved_ && find_near_root(loop, body, slots, origin_[0])) return LoopFailure::none;
-  if (!solved_ || !known || search.even_order || matrix_.determinant_sign() == search.first_sign)
-    return search.failure;
+  if (!solved_ || !known || search.even_order) return search.failure;
+  const bool is_near = longest_change(loop, slots) < kLongWay;
+  if (matrix_.determinant_sign() == search.first_sign &&
+      (is_near || keeps_sign(loop, body, slots, origin_, search.first_sign)))
+    return LoopFailure::none;
   read(loop, slots, target_);
   write(loop, slots, origin_);
   const Search shorter = newton(loop, body, slots, Steps::parts);
@@ -239,8 +249,9 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
     run_tape(body, slots);
     // Steps at the level of rounding are not judged by the residual, which is noise there.
     const auto leaps = [&] {
-      return steps != Steps::any && change > kShort && poles_.needed(loop, body) &&
-             !poles_.has_values(loop, body, slots, start_);
+      if (steps == Steps::any || !(change > kShort)) return false;
+      return (poles_.needed(loop, body) && !poles_.has_values(loop, body, slots, start_)) ||
+             (steps == Steps::parts && !keeps_sign(loop, body, slots, start_, search.first_sign));
     };
     while (change > 1e-13 &&
            (!(matrix_.residual_norm(loop, slots) < (1 - 1e-4 * fraction) * norm) || leaps())) {
@@ -267,9 +278,6 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
 
 LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const Instruction> body,
                                           double* slots) {
-  // A way along which another branch may lie: of 1 + |z| where there was no solution before, else of a
-  // machine unit, since branches may be as near to each other far from zero.
-  constexpr double kLongWay = 0.05;
   constexpr double kNoWay =
       1e-6;  // of 1 + |z|: the guess is this solution, to the digits that it is written with
   read(loop, slots, origin_);
@@ -285,7 +293,7 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
   const auto is_on_branch =
       [&](const Search& found) {  // at a root of even order the sign is that of rounding
         return (found.even_order || matrix_.determinant_sign() == branch_) &&
-               (longest_change(loop, slots) < kLongWay || keeps_sign(loop, body, slots));
+               (longest_change(loop, slots) < kLongWay || keeps_sign(loop, body, slots, origin_, branch_));
       };
   Search search = newton(loop, body, slots);
   const bool straight = search.failure == LoopFailure::none && !search.damped;
@@ -342,21 +350,22 @@ double LoopWorkspace::longest_change(const LoopCode& loop, const double* slots) 
   return longest;
 }
 
-/// Whether the determinant of dg/dz has the sign of the branch along the straight line from where the search
-/// began: between two branches that amplifiers hold there lies one that they do not.
-bool LoopWorkspace::keeps_sign(const LoopCode& loop, std::span<const Instruction> body, double* slots) {
+/// Whether the determinant of dg/dz has this sign along the straight line from other unknowns: between two
+/// branches of which it is that lies one of which it is not.
+bool LoopWorkspace::keeps_sign(const LoopCode& loop, std::span<const Instruction> body, double* slots,
+                               const Eigen::VectorXd& from, int sign) {
   // No simple fractions: a leap over some periods of a sine would show its one side at all of them.
   constexpr int kPlaces = 8;
   constexpr double kGolden = 0.6180339887498949;
-  read(loop, slots, target_);
+  read(loop, slots, end_);
   bool keeps = true;
   for (int place = 1; place <= kPlaces && keeps; ++place) {
-    start_ = origin_ + (target_ - origin_) * std::fmod(place * kGolden, 1);
-    write(loop, slots, start_);
+    between_ = from + (end_ - from) * std::fmod(place * kGolden, 1);
+    write(loop, slots, between_);
     run_tape(body, slots);
-    keeps = matrix_.factor(loop, slots) && matrix_.determinant_sign() == branch_;
+    keeps = beside_.factor(loop, slots) && beside_.determinant_sign() == sign;
   }
-  write(loop, slots, target_);
+  write(loop, slots, end_);
   run_tape(body, slots);
   return keeps;
 }

@@ -49,7 +49,8 @@ class LoopWorkspace {
   void hold(double t, std::vector<double> unknowns, bool whatever);
 
  private:
-  /// How Newton's method is to go: as it likes; over no pole; or so too, and by a part of its long steps.
+  /// How Newton's method is to go: as it likes; over no pole; or so too, by a part of its long steps, and to
+  /// no other sign of the determinant of dg/dz.
   enum class Steps : std::uint8_t { any, guarded, parts };
   /// How it has ended.
   struct Search {
@@ -65,7 +66,8 @@ class LoopWorkspace {
   LoopFailure solve_branched(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   bool solves(const LoopCode& loop, std::span<const Instruction> body, double* slots,
               std::span<const double> unknowns);
-  bool keeps_sign(const LoopCode& loop, std::span<const Instruction> body, double* slots);
+  bool keeps_sign(const LoopCode& loop, std::span<const Instruction> body, double* slots,
+                  const Eigen::VectorXd& from, int sign);
   bool relax(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   double way(const LoopCode& loop, const double* slots) const;
   double longest_change(const LoopCode& loop, const double* slots) const;
@@ -74,10 +76,12 @@ class LoopWorkspace {
   void write(const LoopCode& loop, double* slots, const Eigen::VectorXd& unknowns) const;
 
   LoopMatrix matrix_;
+  LoopMatrix beside_;  ///< of `keeps_sign`
   PoleGuard poles_;
   Eigen::MatrixXd step_;             ///< one column
   Eigen::VectorXd start_;            ///< iterate that the step starts from
   Eigen::VectorXd origin_, target_;  ///< where a search began and ended
+  Eigen::VectorXd end_, between_;    ///< of `keeps_sign`
 
   bool following_ = false;
   bool solved_ = false;  ///< a solution is known, and was no singular one
