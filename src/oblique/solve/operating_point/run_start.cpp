@@ -42,9 +42,13 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
   }
   std::vector<text::Diagnostic> warnings;
   std::vector<double> signals(program.n_signals());
+  bool held = false;  // a singular loop is, which has no derivatives
   const auto settle_all = [&] {
     const auto rest = [&] {
-      if (parts.options.settle) warnings = bring_to_rest(program, parts.workspace, t, states, file);
+      if (!parts.options.settle) return;
+      parts.workspace.pass_failing_loops(held);
+      warnings = bring_to_rest(program, parts.workspace, t, states, file);
+      parts.workspace.pass_failing_loops(false);
     };
     // From another start others are sought.
     parts.switching.start(t, states, rest, !parts.loop_start.loop);
@@ -62,7 +66,9 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
   };
   const std::optional<SolveError> trouble = trouble_of_settling();
   if (!trouble) return warnings;
-  if (trouble->kind() != SolveError::Kind::singular_loop) throw SolveError(*trouble);
+  // Where a loop has no solution yet, nothing comes to rest either.
+  if (trouble->kind() != SolveError::Kind::singular_loop && trouble->kind() != SolveError::Kind::no_rest)
+    throw SolveError(*trouble);
   // What an ideal amplifier's loop is made of may have to come to rest before it has a solution.
   if (parts.options.settle && rest_past_loops(program, parts.workspace, t, states) && !trouble_of_settling())
     return warnings;
@@ -70,6 +76,7 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
   parts.workspace.reset();
   if (!hold_singular_start(program, parts.workspace, t, states, parts.options.until - t))
     throw SolveError(*trouble);
+  held = true;
   settle_all();
   return warnings;
 }
