@@ -69,7 +69,7 @@ late  = { type = "time-function", formula = "if(time < 45, sin(9*time), 2 + sin(
 until = 100
 [expect]
 "x period"     = { value = "2*pi/3", within = 1e-8 }
-"c period"     = { value = "2*pi/3 * 1000 ms", within = 1e-3 }
+"c period"     = { value = "2*pi/3 * 1000 ms", within = 1e-5 }
 "late period"  = { value = "2*pi", within = 1e-6 }
 "slow period"  = { value = "20*pi", within = 1e-6 }
 "decay period" = { value = 1, within = 9 }

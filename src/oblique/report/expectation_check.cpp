@@ -23,9 +23,28 @@ double value_at(const solve::Trajectory& extra, double time, std::size_t column)
 /// Rows of a run that a period is found by.
 constexpr int kRowsOfPeriods = 32768;
 
-/// When a signal passes a level between the rows `k` − 1 and `k`: the time as a cubic of the value through
-/// four rows where the signal rises through them all, else on the line between the two.
-double passage(const solve::Trajectory& rows, std::size_t k, std::size_t column, double level) {
+/// When a signal jumps between the rows `k` − 1 and `k`: the time of the first event there; nothing where it
+/// does not jump, or no event is on record.
+std::optional<double> jump(const solve::Run& run, std::size_t k, std::size_t column) {
+  constexpr double kSteep = 10;  // times what it changes by in the rows beside
+  const solve::Trajectory& rows = run.extra;
+  const auto change = [&](std::size_t row) {
+    return row > 0 && row < rows.rows() ? std::abs(rows.at(row, column) - rows.at(row - 1, column)) : 0;
+  };
+  if (!(change(k) > kSteep * (change(k - 1) + change(k + 1)))) return std::nullopt;
+  const auto event =
+      std::find_if(run.events.begin(), run.events.end(),
+                   [&](const solve::EventRecord& record) { return record.time > rows.at(k - 1, 0); });
+  if (event == run.events.end() || event->time > rows.at(k, 0)) return std::nullopt;
+  return event->time;
+}
+
+/// When a signal passes a level between the rows `k` − 1 and `k`: the time of the event by which it jumps; or
+/// the time as a cubic of the value through four rows where the signal rises through them all, else on the
+/// line between the two.
+double passage(const solve::Run& run, std::size_t k, std::size_t column, double level) {
+  if (const auto event = jump(run, k, column)) return *event;
+  const solve::Trajectory& rows = run.extra;
   constexpr std::size_t kPoints = 4;
   bool rises = k >= 2 && k + 1 < rows.rows();
   std::array<double, kPoints> t{}, y{};
@@ -51,7 +70,8 @@ double passage(const solve::Trajectory& rows, std::size_t k, std::size_t column,
 
 /// The mean time from rise to rise through the middle between the extremes, from a row on; not a number where
 /// it does not rise twice.
-double period_from(const solve::Trajectory& rows, std::size_t first, std::size_t column) {
+double period_from(const solve::Run& run, std::size_t first, std::size_t column) {
+  const solve::Trajectory& rows = run.extra;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t k = first; k < rows.rows(); ++k) {
     low = std::min(low, rows.at(k, column));
@@ -61,16 +81,16 @@ double period_from(const solve::Trajectory& rows, std::size_t first, std::size_t
   std::vector<double> rises;
   for (std::size_t k = first + 1; k < rows.rows(); ++k) {
     if (rows.at(k - 1, column) < level && rows.at(k, column) >= level)
-      rises.push_back(passage(rows, k, column, level));
+      rises.push_back(passage(run, k, column, level));
   }
   if (rises.size() < 2) return std::nan("");
   return (rises.back() - rises.front()) / static_cast<double>(rises.size() - 1);
 }
 
 /// The period in the second half of the rows, or in all of them where that is too short.
-double period(const solve::Trajectory& rows, std::size_t column) {
-  const double late = period_from(rows, rows.rows() / 2, column);
-  return std::isnan(late) ? period_from(rows, 0, column) : late;
+double period(const solve::Run& run, std::size_t column) {
+  const double late = period_from(run, run.extra.rows() / 2, column);
+  return std::isnan(late) ? period_from(run, 0, column) : late;
 }
 
 /// `column` counts the time too.
@@ -81,7 +101,7 @@ double actual_value(const diagram::Expectation& expectation, const solve::Run& r
     case diagram::Expectation::Kind::minimum:
       return run.extremes.at(column - 1).minimum.value;
     case diagram::Expectation::Kind::period:
-      return period(run.extra, column);
+      return period(run, column);
     case diagram::Expectation::Kind::at_time:
       break;
   }
