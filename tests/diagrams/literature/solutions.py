@@ -20,14 +20,14 @@ import tomllib
 
 sys.dont_write_bytecode = True
 
-from truth import (arrivals, beginnings, big, contacts, edges, hysteresis, impacts, implicit, late, loops, mechanics,
-                   operation, pulses, regulators, seeds, shapes, slides, smooth, stiff, stores, switching)
+from truth import (arrivals, beginnings, beside, big, contacts, edges, hysteresis, impacts, implicit, late, loops,
+                   mechanics, operation, pulses, regulators, seeds, shapes, slides, smooth, stiff, stores, switching)
 from truth.tools import latest_growth
 
 
 def problems():
     for module in (late, pulses, switching, hysteresis, mechanics, smooth, stiff, big, operation, arrivals, stores,
-                   loops, impacts, slides, implicit, seeds, shapes, beginnings, regulators, contacts, edges):
+                   loops, impacts, slides, implicit, seeds, shapes, beginnings, regulators, contacts, edges, beside):
         for name, function in list(vars(module).items()):
             if inspect.isfunction(function) and function.__module__ == module.__name__ and not name.startswith("_"):
                 yield name, function
