@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include <oblique/mechanism/model/plane.h>
 #include <oblique/mechanism/motion/crossings.h>
@@ -63,11 +64,12 @@ bool come_back_alone(BranchWalk& walk, Gap& gap, double t) {
   };
   /// The moment between two of which the second is back.
   const auto first_back = [&](double outside, double within, double margin) {
-    while (true) {
-      const double middle = outside + (within - outside) / 2;
-      if (middle == outside || middle == within) return within;
+    double middle = std::midpoint(outside, within);
+    while (middle != outside && middle != within) {
       (is_back(middle, margin) ? within : outside) = middle;
+      middle = std::midpoint(outside, within);
     }
+    return within;
   };
   double from = walk.time, here = beyond(from);
   while (from != t) {

@@ -234,15 +234,15 @@ Crossing cross_at(BranchWalk& walk, std::size_t g, double t, bool is_last) {
     const Crossing crossing = cross_infinity(walk, g, t);
     if (crossing != Crossing::regular) return crossing;
   }
-  const double direction = t > walk.time ? 1 : -1;
+  const double way = t - walk.time;
   const double radian = walk.duration_of_degree * 180 / std::numbers::pi;
   const Singularity singularity = solver.singularity(walk.drives, walk.here, radian);
   const auto meeting = singularity.crossing();
-  if (meeting && meeting->time * direction > 0 && std::abs(meeting->time) < kNearCrossing * radian) {
+  if (meeting && meeting->time * way > 0 && std::abs(meeting->time) < kNearCrossing * radian) {
     const Crossing crossing = cross_modes(walk, g, t, meeting->time);
     if (crossing != Crossing::regular) return crossing;
   }
-  const auto fold = singularity.fold(direction);
+  const auto fold = singularity.fold(way);
   const double near = is_last ? kNearLastFold : kNearFold;
   if (fold && std::abs(*fold) < near * radian) return end_at(walk, g, t, *fold, singularity);
   if (!is_last) return Crossing::regular;
@@ -254,12 +254,12 @@ Crossing cross_at(BranchWalk& walk, std::size_t g, double t, bool is_last) {
 }  // namespace
 
 Crossing step_towards(BranchWalk& walk, double t) {
-  const double direction = t > walk.time ? 1 : -1;
-  double dt = std::min({walk.step, walk.duration_of_degree, std::abs(t - walk.time)});
+  const double way = t - walk.time;
+  double dt = std::min({walk.step, walk.duration_of_degree, std::abs(way)});
   // nearer to where modes meet than this no pose tells them apart, so none is taken there
   for (std::size_t g = 0; g < walk.courses.size(); ++g) {
     const BranchWalk::Course& course = walk.courses[g];
-    const bool falls = course.derivative * course.determinant * direction < 0;
+    const bool falls = course.derivative * course.determinant * way < 0;
     const double dead_centre = walk.kinematics.solver(g).is_tracked() ? kMeeting : 0;
     Crossing crossing = Crossing::regular;
     if (falls && std::abs(course.determinant) < std::max(kSingular * course.peak, 2 * dead_centre)) {
@@ -272,7 +272,7 @@ Crossing step_towards(BranchWalk& walk, double t) {
   }
   while (true) {
     // the last step ends at t itself
-    const double target = dt == std::abs(t - walk.time) ? t : walk.time + direction * dt;
+    const double target = dt == std::abs(way) ? t : walk.time + std::copysign(dt, way);
     if (walk.tracks) walk.predict(target - walk.time);
     const BranchWalk::Verdict verdict = walk.attempt(target);
     if (verdict == BranchWalk::Verdict::good) {

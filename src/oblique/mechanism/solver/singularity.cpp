@@ -8,14 +8,14 @@ namespace oblique::mechanism {
 // φ = 0 has an s where P(τ) = D τ² − 2 m τ + σ² ≥ 0, with D = B² − A C and m = a A − σ B; it turns back at
 // the zeros of P. Both lie at m/D where two lines cross.
 
-std::optional<double> Singularity::fold(double direction) const {
+std::optional<double> Singularity::fold(double way) const {
   const double d = st * st - ss * tt, m = drive * ss - sigma * st;
   const double rest = m * m - d * sigma * sigma;
   if (!(rest >= 0)) return std::nullopt;
   const double sum = m + std::copysign(std::sqrt(rest), m);
   std::optional<double> nearest;
   for (const double tau : {sigma * sigma / sum, sum / d}) {
-    if (!std::isfinite(tau) || tau * direction < 0) continue;
+    if (!std::isfinite(tau) || tau * way < 0) continue;
     if (!nearest || std::abs(tau) < std::abs(*nearest)) nearest = tau;
   }
   return nearest;

@@ -35,8 +35,9 @@ struct Singularity {
     double apart = 0;  ///< how fast they go apart [length/s]
   };
 
-  /// The time τ at which this branch turns back, on the way in `direction` (±1); nothing where it goes on.
-  std::optional<double> fold(double direction) const;
+  /// The time τ at which this branch turns back, on the way to times of the sign of `way`; nothing where it
+  /// goes on.
+  std::optional<double> fold(double way) const;
 
   /// The crossing nearby: nothing where the second order is not of two lines, or the curve misses it by more
   /// than rounding.
