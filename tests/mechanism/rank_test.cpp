@@ -140,6 +140,25 @@ TEST(Rank, OfAParallelogramAtItsChangePointIsLowerThere) {
   EXPECT_EQ(jacobian_rank(parallel, flat(0.1)).mobility(), 1);
 }
 
+// Next to its change point it still has modes to tell apart, and its rank is lower; 5° on it is not, however
+// long the drive takes to get there.
+TEST(Rank, NextToAChangePointIsHigherALittleOn) {
+  const double start = 1e-6, on = start + 5 * std::numbers::pi / 180;
+  const double c = std::cos(on), s = std::sin(on);
+  for (const double speed : {1e-6, 1.0, 1e3}) {
+    Mechanism parallel = parallelogram("1e-6 rad", "[120, 40]");
+    parallel.drives.front().speed = speed;
+    const MobilityReport report = mobility_report(parallel, decompose(parallel));
+    EXPECT_EQ(report.verdict, MobilityReport::Verdict::shaky) << speed;
+    EXPECT_EQ(report.start.mobility(), 2);
+    ASSERT_TRUE(report.beside);
+    EXPECT_EQ(report.beside->mobility(), 1);
+    const JacobianRank there =
+        jacobian_rank(parallel, {{{0, 0}, c, s}, {{40 * c, 40 * s}, 1, 0}, {{80, 0}, c, s}});
+    EXPECT_NEAR(report.beside->least_kept, there.least_kept, 1e-9);  // places are known to roundings
+  }
+}
+
 TEST(Rank, StartAtAChangePointIsCalledShaky) {
   EXPECT_THAT(
       refusal(parallelogram("0 deg", "[120, 0]")),

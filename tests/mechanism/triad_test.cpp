@@ -349,7 +349,10 @@ TEST(Triad, FindsAPoseNextToAParallelogram) {
 
 TEST(Triad, IsMovableWhereLegsRepeat) {
   const Leg rod = circle({1, 0}, {4, 0}, 2.5);
-  EXPECT_TRUE(platform_modes({rod, rod, circle({0, 1}, {0, 0}, 2)}).movable);
+  const Leg other = circle({0, 1}, {0, 0}, 2);
+  EXPECT_TRUE(platform_modes({rod, rod, other}).movable);
+  EXPECT_TRUE(platform_modes({rod, other, rod}).movable);
+  EXPECT_TRUE(platform_modes({other, rod, rod}).movable);
   EXPECT_TRUE(platform_modes({rod, kLevel, kLevel}).movable);
   EXPECT_TRUE(platform_modes({kUpright, kLevel, fixed_line({0, 0}, {0, 0}, 1)}).movable);
   // the same circle twice, of two lengths: impossible
