@@ -98,6 +98,41 @@ TEST(Layout, TerminalsStandAtTheEdges) {
   }
 }
 
+//           in ──┐
+//   a ──► b ──► c      terminals stand at the edges wherever their wires lead, whichever has the first number
+//   └──► out
+TEST(Layout, LayersDoNotDependOnTheNumbersOfTheBoxes) {
+  for (std::size_t shift = 0; shift < 5; ++shift) {
+    const auto number = [&](std::size_t place) { return (place + shift) % 5; };
+    const std::size_t in = number(0), a = number(1), b = number(2), c = number(3), out = number(4);
+    LayoutGraph graph;
+    graph.nodes.assign(5, plain_box(2, 1));
+    graph.nodes[in] = plain_box(0, 1);
+    graph.nodes[in].rank = LayoutRank::first;
+    graph.nodes[out] = plain_box(1, 0);
+    graph.nodes[out].rank = LayoutRank::last;
+    graph.wires = {{a, 0, b, 0}, {b, 0, c, 0}, {in, 0, c, 1}, {a, 0, out, 0}};
+    const std::vector<std::size_t> layers = layered::assign_layers(graph);
+    for (std::size_t place = 0; place < 5; ++place) EXPECT_EQ(layers[number(place)], place) << shift;
+  }
+}
+
+//   a ──► b ──► c ──► d      the wide w stands below c, the only one as wide
+//   └───────► w ──────┘
+TEST(Layout, WideBoxesStandInOneLayer) {
+  for (std::size_t shift = 0; shift < 5; ++shift) {
+    const auto number = [&](std::size_t place) { return (place + shift) % 5; };
+    LayoutGraph graph;
+    graph.nodes.assign(5, plain_box(2, 1));
+    const std::size_t a = number(0), b = number(1), c = number(2), d = number(3), w = number(4);
+    for (const std::size_t wide : {c, w}) graph.nodes[wide].size.x() = 400;
+    graph.wires = {{a, 0, b, 0}, {b, 0, c, 0}, {c, 0, d, 0}, {a, 0, w, 0}, {w, 0, d, 1}};
+    const std::vector<std::size_t> layers = layered::assign_layers(graph);
+    EXPECT_EQ(layers[c], 2U) << shift;
+    EXPECT_EQ(layers[w], 2U) << shift;
+  }
+}
+
 TEST(Layout, NothingGivesNothing) {
   EXPECT_TRUE(lay_out({}).corners.empty());
 }

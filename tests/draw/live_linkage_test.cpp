@@ -90,5 +90,29 @@ TEST(LiveLinkage, KeepsTheNameOfAPistonOffItsRod) {
   }
 }
 
+// In two positions half a turn apart the crank leads away from its pin to opposite sides: the name stands
+// clear of it, and of the coupler, in both.
+TEST(LiveLinkage, KeepsANameOffTheLinksInAShortMotionToo) {
+  const mechanism::Mechanism mechanism = shipped("four-bar");
+  const mechanism::Motion motion = mechanism::solve_motion(mechanism, 61);
+  const std::size_t pin = mechanism.find_point("B").value();
+  for (const auto& [first, second] : {std::pair(0U, 30U), {30U, 0U}}) {
+    draw::LinkageScene scene = scene_of(motion);
+    scene.motion = {motion.configurations[first], motion.configurations[second]};
+    const draw::LiveLinkage live(mechanism, scene);
+    for (const mechanism::Configuration& here : scene.motion) {
+      const std::vector<draw::Mark> marks = live.exact(here);
+      const draw::Mark* const name = find_in(marks, "name-B");
+      ASSERT_NE(name, nullptr);
+      const Vector2d to = live.pixel(here.points[pin].position);
+      for (const char* const other : {"A", "C"}) {
+        const Vector2d from = live.pixel(here.points[mechanism.find_point(other).value()].position);
+        for (int k = 0; k <= 100; ++k)
+          EXPECT_FALSE(draw::extent_of(*name).contains(Vector2d(from + k / 100.0 * (to - from)))) << other;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace oblique::test
