@@ -67,6 +67,21 @@ TEST(Measure, FindsAPeakBetweenTwoRowsThatAreNearlyAlike) {
   }
 }
 
+// A peak between two rows just before the end of a run: the row behind it is lower than one long before, and
+// the last row hardly lower than that. In rows from the last but one it is that of s³/3 − s²/20 − 3s/10, at
+// s = −1/2; a polynomial of that degree is interpolated to rounding.
+TEST(Measure, FindsAPeakJustBeforeTheEnd) {
+  const int rows = 21;
+  const auto peak = [&](double t) {
+    const double s = t * (rows - 1) - (rows - 2);
+    if (s < -4.5) return std::abs(s + 15) < 0.5 ? 0.05 : -10;
+    return s * s * s / 3 - s * s / 20 - 3 * s / 10;
+  };
+  const auto run = sampled(1, rows, peak, [&](double t) { return -peak(t); });
+  EXPECT_NEAR(measure("max(x)", run), 23.0 / 240, 1e-12);
+  EXPECT_NEAR(measure("min(y)", run), -23.0 / 240, 1e-12);
+}
+
 TEST(Measure, OvershootsNothingWhereTheRunJumps) {
   const auto step = [](double t) { return t < 0.303 ? -1.0 : 1.0; };
   const auto run = sampled(1, 101, step, [](double t) { return std::abs(t - 0.505); });

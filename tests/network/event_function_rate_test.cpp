@@ -278,6 +278,22 @@ TEST(SwitchStructure, TellsLongSumsApart) {
     ASSERT_EQ(apart.unit.size(), 2U);
     EXPECT_NE(apart.unit[0], apart.unit[1]) << terms;
   }
+  // terms that are not put together, with the other one first or last
+  std::string many, sum;
+  for (int k = 0; k < 50; ++k) {
+    many += fmt::format("x{} = {{ type = \"integrator\", in = \"-x{}\" }}\n", k, k);
+    sum += fmt::format("\"x{}\", ", k);
+  }
+  for (const bool last : {false, true}) {
+    const auto with = [&](const char* name, const char* other) {
+      return fmt::format("{} = {{ type = \"comparator\", in = [{}] }}\n", name,
+                         last ? sum + other : other + (", " + sum));
+    };
+    const Compiled other(many + states + with("a", "\"y\"") + with("b", "\"z\""));
+    const SwitchStructure& apart = other.program.switch_structure();
+    ASSERT_EQ(apart.unit.size(), 2U);
+    EXPECT_NE(apart.unit[0], apart.unit[1]) << last;
+  }
   const Compiled same(states + comparator("a", 3, "y") + comparator("b", 3, "y"));
   EXPECT_EQ(same.program.switch_structure().unit[0], same.program.switch_structure().unit[1]);
 }
