@@ -2,6 +2,7 @@
 // Runs that cannot be finished, and what they say.
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -104,6 +105,23 @@ y = { type = "integrator", in = ["q"] }
                          {.tolerance = 1e-6});
   EXPECT_TRUE(f.kind == SolveError::Kind::singular_loop || f.kind == SolveError::Kind::blow_up);
   EXPECT_NEAR(f.time, 0.5, 1e-3);
+}
+
+// 1/x has no value at the row at which x is zero: however short the run, those of the instants beside it are
+// not taken for it. That time is a binary fraction, so that no rounding makes x another number.
+TEST(SingularLoop, AtARowIsNotWhatItIsBeside) {
+  for (const double span : {1.0, 0x1p-20}) {
+    const diagram::BlockLibrary library = testing::shipped_blocks_and(
+        "way", fmt::format("[outputs]\nout = {{}}\n[equations]\nout = \"time/{0} - 0.5\"\n", span));
+    const auto f = failure(R"toml(x = { type = "way" }
+q = { type = "divider", numerator = "one", denominator = "x", gain = inf, bandwidth = inf }
+y = { type = "integrator", in = ["one"] }
+one = { type = "constant" }
+)toml",
+                           {.until = span, .samples = 3}, library);
+    EXPECT_EQ(f.kind, SolveError::Kind::singular_loop) << span;
+    EXPECT_EQ(f.time, span / 2);
+  }
 }
 
 TEST(LoopWithoutSolution, IsNamedWithWhereItWasSought) {
