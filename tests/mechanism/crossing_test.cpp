@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/mechanism/motion/follower.h>
 #include <oblique/mechanism/motion/motion_range.h>
 #include <oblique/mechanism/structure/structure.h>
 
@@ -24,10 +25,7 @@ using Kind = MotionEvent::Kind;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// A deltoid: C lies on the bisector of the crank and the frame, cos(φ/2) + √(4 − sin²(φ/2)) from A, over two
-// turns of the crank; at 360° B lies on D.
-TEST(Crossing, OfAKitePassesWhereItsPivotsMeet) {
-  const Mechanism mechanism = parse_mechanism(R"(format = "oblique-mechanism/1"
+constexpr const char* kKite = R"(format = "oblique-mechanism/1"
 [frame]
 A = [0, 0]
 D = [1, 0]
@@ -39,8 +37,18 @@ DC = { points = ["D", "C"], length = 2 }
 crank = { turns = "AB", about = "A", speed = 1, start = "40 deg" }
 [sketch]
 C = [2, 1.5]
-)",
-                                              "kite.toml");
+)";
+
+/// C lies on the bisector of the crank and the frame, cos(φ/2) + √(4 − sin²(φ/2)) from A.
+Vector2d tip_of_kite(double angle) {
+  const double half = angle / 2;
+  return (std::cos(half) + std::sqrt(4 - std::pow(std::sin(half), 2))) *
+         Vector2d(std::cos(half), std::sin(half));
+}
+
+// A deltoid over two turns of the crank; at 360° B lies on D.
+TEST(Crossing, OfAKitePassesWhereItsPivotsMeet) {
+  const Mechanism mechanism = parse_mechanism(kKite, "kite.toml");
   for (const int positions : {91, 721, 10000}) {
     MotionOptions options;
     options.positions = positions;
@@ -53,14 +61,25 @@ C = [2, 1.5]
                   1e-9);
     }
     for (std::size_t row = 0; row < motion.times.size(); ++row) {
-      const double half = motion.drives[row][0].value / 2;
-      const Vector2d c = (std::cos(half) + std::sqrt(4 - std::pow(std::sin(half), 2))) *
-                         Vector2d(std::cos(half), std::sin(half));
+      const Vector2d c = tip_of_kite(motion.drives[row][0].value);
       // the direction of B → D carries a rounding over their distance, 1e-6 at the least where it is used
       EXPECT_LT((motion.configurations[row].points[3].position - c).norm(), 1e-9) << row;
     }
   }
   EXPECT_EQ(plan_motion_range(mechanism, decompose(mechanism)).changes.size(), 1U);
+}
+
+// On from one time to the next, and back.
+TEST(Crossing, IsPassedToAndFro) {
+  const Mechanism mechanism = parse_mechanism(kKite, "kite.toml");
+  const Structure structure = decompose(mechanism);
+  Follower follower(mechanism, structure);
+  for (const double t : {8.0, 4.0, 13.0, -2.0, 7.0}) {
+    const Configuration& here = follower.advance(t);
+    ASSERT_EQ(here.status, Status::ok) << t;
+    // as above
+    EXPECT_LT((here.points[3].position - tip_of_kite(40 * kDegree + t)).norm(), 1e-9) << t;
+  }
 }
 
 // The same places, whatever the clock: a thousand times faster or slower they are passed at other times.

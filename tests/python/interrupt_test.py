@@ -25,6 +25,7 @@ print("goes on:", {after})
 
 @pytest.mark.parametrize("prepare, work, after", [
     ("d = ob.Diagram('diagrams/lessons/circle.toml')", "d.run(1e9, max_steps=10**9)", "d.run()['t'][0] == 0"),
+    ("d = ob.Diagram('diagrams/lessons/circle.toml')", "d.run(1e9, max_steps=10**9, samples=2)", "d.run()['t'][0] == 0"),
     ("d = ob.Diagram('diagrams/lessons/circle.toml')", "d.run(1e9, max_steps=10**9, trust=True)", "d.run()['t'][0] == 0"),
     ("c = ob.Console('diagrams/lessons/circle.toml')", "c.advance(1e9)", "c.time < 1e9 and abs(c['x']) < 1.01"),
     ("c = ob.Console('diagrams/lessons/circle.toml')", "c.scope('x', 1e9)", "c.time < 1e9 and abs(c['x']) < 1.01"),
