@@ -17,6 +17,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::message_of;
+using ::testing::Not;
 
 const std::string kHead = "format = \"oblique-block/1\"\ntitle = \"T\"\n";  // two lines
 
@@ -182,6 +183,15 @@ TEST(ParseBlock, BrokenTomlIsAReadError) {
   EXPECT_THAT(
       message_of<text::ReadError>([] { parse_block(kHead + "[outputs]\nx = {}\nx = {}\n", "b.toml", "b"); }),
       HasSubstr("b.toml:5:"));
+}
+
+// What is no block says nothing of one.
+TEST(ParseBlock, LooksNoFurtherIntoAFileOfAnotherFormat) {
+  const std::string message = message_of(
+      [] { parse_block("format = \"oblique-diagram/1\"\n[outputs]\ny = \"x\"\n[levels]\n", "b.toml", "b"); });
+  EXPECT_THAT(message, HasSubstr("b.toml:1:10: the format is 'oblique-diagram/1'"));
+  EXPECT_THAT(message, Not(HasSubstr("'y'")));
+  EXPECT_THAT(message, Not(HasSubstr("levels")));
 }
 
 TEST(ParseBlock, NamesWhatIsMissing) {

@@ -139,6 +139,17 @@ TEST(Measure, FindsATimeBetweenTwoRows) {
   EXPECT_NEAR(measure("time(x > 0.9999)", run), std::asin(bar) / w, 1e-6);
 }
 
+// From 2 to 3 in steps of 1/10.
+TEST(Measure, TakesAConditionForOneWhereItHolds) {
+  const auto run = sampled(
+      1, 11, [](double t) { return 2 + t; }, [](double) { return 4; });
+  for (const char* const condition : {"x >= 2.5", "x > 2.5", "x <= 2.5", "x < 2.5", "x == 2", "x != 2",
+                                      "x > 2.5 and y > 3", "x > 2.5 or y < 3", "not (x > 2.5)"}) {
+    EXPECT_EQ(measure("max(" + std::string(condition) + ")", run), 1) << condition;
+    EXPECT_EQ(measure("min(" + std::string(condition) + ")", run), 0) << condition;
+  }
+}
+
 TEST(Measure, CombinesNumbers) {
   const auto run = sampled(
       1, 11, [](double t) { return 2 + t; }, [](double t) { return 4 - t; });

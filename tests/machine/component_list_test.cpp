@@ -178,6 +178,7 @@ TEST(ComponentList, CannotTellWhereTimeFactorsAreNotPublished) {
   machine.rates_known = false;
   const ComponentList fast = components("x = { type = \"integrator\", in = \"x\", rate = 12345 }\n", machine);
   EXPECT_EQ(row(fast, "integrators with k0 = 1.234e+04 1/s").available, std::nullopt);
+  EXPECT_FALSE(row(fast, "integrators with k0 = 1.234e+04 1/s").at_least);  // what is needed is counted
   EXPECT_EQ(fast.verdict(), ComponentList::Verdict::cannot_tell);
   EXPECT_EQ(components("x = { type = \"integrator\", in = \"x\" }\n", machine).verdict(),
             ComponentList::Verdict::fits);

@@ -157,6 +157,11 @@ q  = { type = "servo-amplifier", in = ["xq"], gain = 100 }
   ASSERT_EQ(loop.unknowns[0].sign_changes.size(), 1U);
   EXPECT_NEAR(loop.unknowns[0].sign_changes[0], 1.25, 1e-9);
   EXPECT_FALSE(loop.time_constant);  // it would not settle there
+  // what begins at zero has no sign yet, and changes none
+  const std::vector<Instant> rising{{0, {0, 0}}, {1, {0.2, 0}}, {2, {0.4, 0}}};
+  const LoopUnknown unknown = explain_loops(made.program, flow, rising).at(0).unknowns[0];
+  EXPECT_EQ(unknown.sign, 0);
+  EXPECT_THAT(unknown.sign_changes, ElementsAre());
 }
 
 TEST(Stability, NamesTheElementsOfABadlyDampedServoMode) {
