@@ -162,6 +162,10 @@ INSTANTIATE_TEST_SUITE_P(
                        "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 3 --tolerance 1% "
                        "--yield 1% --until-within 2",
                        2, "--until-within 2; expected a part above 0 and below 1, such as 1%"},
+        BadRequestCase{"YieldWithinNothing",
+                       "oblique compare diagrams/mechanisms/four-bar.toml --monte-carlo 3 --tolerance 1% "
+                       "--yield 1% --until-within 0%",
+                       2, "--until-within 0%; expected a part above 0 and below 1, such as 1%"},
         BadRequestCase{"SeedWithoutMonteCarlo", "oblique compare diagrams/mechanisms/four-bar.toml --seed 3",
                        2, "--seed requires --monte-carlo"},
         BadRequestCase{
