@@ -2,6 +2,7 @@
 #include <oblique/solve/readings/independent_units.h>
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -88,6 +89,24 @@ w = { type = "integrator", in = "-d" }
   const std::vector<std::vector<std::size_t>> parts = {{0}, {1, 2, 3}};
   EXPECT_EQ(units.parts_of(all), parts);
   EXPECT_FALSE(units.acts(unit_of(made, "c"), unit_of(made, "a")));
+}
+
+// All pairs of as many as there may be are looked at: of more none is, so that a thousand at rest cost
+// nothing.
+TEST(IndependentUnits, AreTakenTogetherWhereTheyAreMany) {
+  std::string blocks;
+  for (std::size_t k = 0; k <= IndependentUnits::kMostUnits; ++k) {
+    const std::string number = std::to_string(k);
+    blocks += "r" + number + " = { type = \"sign\", in = \"x" + number + "\" }\nx" + number +
+              " = { type = \"integrator\", in = \"-r" + number + "\" }\n";
+  }
+  const Compiled made(blocks);
+  IndependentUnits units(made.program);
+  std::vector<std::uint32_t> all(IndependentUnits::kMostUnits + 1);
+  std::iota(all.begin(), all.end(), 0U);
+  EXPECT_EQ(units.parts_of(all).size(), 1U);
+  all.pop_back();
+  EXPECT_EQ(units.parts_of(all).size(), IndependentUnits::kMostUnits);
 }
 
 // What the event of a store sets acts on the relay that reads it, and on no other.

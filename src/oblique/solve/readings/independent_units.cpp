@@ -30,8 +30,8 @@ bool IndependentUnits::are(std::uint32_t unit_a, std::uint32_t unit_b) {
 }
 
 std::vector<std::vector<std::size_t>> IndependentUnits::parts_of(std::span<const std::uint32_t> units) {
-  std::vector<std::size_t> part_of(units.size());
-  for (std::size_t u = 0; u < units.size(); ++u) {
+  std::vector<std::size_t> part_of(units.size(), 0);
+  for (std::size_t u = 0; u < units.size() && units.size() <= kMostUnits; ++u) {
     part_of[u] = u;
     for (std::size_t v = 0; v < u; ++v) {
       if (part_of[v] == part_of[u] || are(units[u], units[v])) continue;

@@ -27,8 +27,9 @@ class IndependentUnits {
   /// Whether an event does.
   bool acts(const network::Event& event, std::uint32_t on);
   /// The places in `units` of those that hang together, directly or by others of them: each place once,
-  /// ascending.
+  /// ascending. More than `kMostUnits` are taken to hang together.
   std::vector<std::vector<std::size_t>> parts_of(std::span<const std::uint32_t> units);
+  static constexpr std::size_t kMostUnits = 64;
 
  private:
   const network::SwitchStructure::Ancestry& ancestry(std::uint32_t unit);
