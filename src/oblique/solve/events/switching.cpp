@@ -133,7 +133,7 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
 std::optional<EventActions::Effect> Switching::serve_events(double t, std::vector<double>& x, bool starting) {
   constexpr int kManyHops = 40;
   const std::vector<double> before(event_functions_.values().begin(), event_functions_.values().end());
-  const auto effect = actions_.serve(t, x, starting);
+  auto effect = actions_.serve(t, x, starting);
   hops_ = effect && effect->tables ? hops_ + 1 : 0;
   if (!effect) return effect;
   if (hops_ == kManyHops) loop_jumps_.settle(t, x);
