@@ -226,7 +226,7 @@ std::string verdict_text(const solve::StabilityReport& report) {
              "on it is not known";
     case solve::StabilityVerdict::undamped:
       if (!report.proven) return "undamped as far as was found: no mode that grows, which is no proof";
-      return "undamped: a mode neither decays nor grows, and none grows";
+      return "undamped: a mode neither decays nor grows, and none grows exponentially";
     case solve::StabilityVerdict::grows:
       if (report.rightmost && solve::verdict_on(*report.rightmost) == solve::ModeVerdict::grows) {
         const auto& ideal = report.rightmost->ideal_pole;
