@@ -48,7 +48,7 @@ b = { type = "sign", in = "y" }
 }
 
 const Case kCases[] = {
-    {"NotWhereBothReadOnlyTheTime", "y = { type = \"integrator\", in = \"-b\", rate = \"0.5\" }\n", false},
+    {"NotWithoutAWire", "y = { type = \"integrator\", in = \"-b\", rate = \"0.5\" }\n", false},
     {"NotWhereBothAreReadByAThird",
      "y = { type = \"integrator\", in = \"-b\" }\nz = { type = \"integrator\", in = [\"a\", \"b\"] }\n",
      false},

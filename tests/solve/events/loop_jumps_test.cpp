@@ -186,5 +186,20 @@ TEST(LoopJumps, OfALatchThatIsSetAreItsOwn) {
   }
 }
 
+// y = clip(2 y + f) has three solutions at f = 0. The guess is the one in the middle, exactly, from which the
+// elements would run away: it stays there, and the others are told of.
+TEST(LoopJumps, AreToldWhereALoopBeginsExactlyOnAnUnstableSolution) {
+  const Compiled made(R"toml(f = { type = "time-function", formula = "1.5*sin(time)" }
+s = { type = "summer", in = ["2*y", "f"] }
+y = { type = "limiter", in = "s" }
+)toml");
+  const auto result = testing::run_of(made, {.until = 0.5});
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(
+      result.warnings[0].what,
+      "the algebraic loop of 's', 'y' has several solutions: at t = 0 s the run begins with s = 0, and -2 "
+      "is another; nothing in the diagram chooses between them");
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -366,14 +366,14 @@ TEST(Slides, ThatAreAddedAreNoneOfThese) {
   EXPECT_THAT(result.warnings, ::testing::IsEmpty());
 }
 
-// The flip-flop reads the second relay, and the first has nothing to do with it.
+// The counter reads the second relay, and the first has nothing to do with it.
 TEST(Slides, AreNamedWhereSomethingDependsOnThem) {
   const auto result = run_of(two_held("n = { type = \"counter\", clock = \"rb\" }\n"), {.until = 2});
   ASSERT_EQ(result.warnings.size(), 1U);
   EXPECT_THAT(result.warnings[0].what, HasSubstr("depends on 'rb', which slides"));
 }
 
-// Three coupled relays, and a clock that sets an integrator 20 times beside them: what slides is entered and
+// Two coupled relays, and a clock that sets an integrator 20 times beside them: what slides is entered and
 // left as often as without it.
 TEST(Slides, GoOnBesideEventsThatDoNotConcernThem) {
   const std::string slides = R"toml(f1 = { type = "time-function", formula = "1.2*sin(time)" }
