@@ -121,8 +121,18 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
   const double t = slots[0];
   if (t == held_time_ && solves(loop, body, slots, held_)) return LoopFailure::none;
   if (loop.linear) return solve_linear(loop, body, slots);
-  if (loop.has_branches()) return solve_branched(loop, body, slots);
-  return solve_unbranched(loop, body, slots);
+  const int how = 4 * branch_ + 2 * (solved_ ? 1 : 0) + (following_ ? 1 : 0);
+  if (failed_.repeats(loop, slots, how)) {
+    run_tape(body, slots);
+    return failure_;
+  }
+  failure_ = loop.has_branches() ? solve_branched(loop, body, slots) : solve_unbranched(loop, body, slots);
+  if (failure_ == LoopFailure::none) {
+    failed_.forget();
+  } else {
+    failed_.note(loop, body, slots, origin_, how);
+  }
+  return failure_;
 }
 
 /// Newton's method, which keeps to the side of a pole on which it begins, and from solution to solution to

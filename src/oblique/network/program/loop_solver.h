@@ -8,6 +8,7 @@
 
 #include <Eigen/Dense>
 
+#include <oblique/network/program/failed_search.h>
 #include <oblique/network/program/loop_matrix.h>
 #include <oblique/network/program/pole_guard.h>
 #include <oblique/network/program/tape.h>
@@ -78,10 +79,12 @@ class LoopWorkspace {
   LoopMatrix matrix_;
   LoopMatrix beside_;  ///< of `keeps_sign`
   PoleGuard poles_;
-  Eigen::MatrixXd step_;             ///< one column
-  Eigen::VectorXd start_;            ///< iterate that the step starts from
-  Eigen::VectorXd origin_, target_;  ///< where a search began and ended
-  Eigen::VectorXd end_, between_;    ///< of `keeps_sign`
+  FailedSearch failed_;
+  LoopFailure failure_ = LoopFailure::none;  ///< of the last search
+  Eigen::MatrixXd step_;                     ///< one column
+  Eigen::VectorXd start_;                    ///< iterate that the step starts from
+  Eigen::VectorXd origin_, target_;          ///< where a search began and ended
+  Eigen::VectorXd end_, between_;            ///< of `keeps_sign`
 
   bool following_ = false;
   bool solved_ = false;  ///< a solution is known, and was no singular one

@@ -66,6 +66,10 @@ double change_of(const network::Program& program, const network::Workspace& work
   return change;
 }
 
+/// At least so often a loop that no derivative needs is looked at over a run, however few its rows are: where
+/// its branch has ended it may have begun anew by the next.
+constexpr int kFewestPlaces = 1000;
+
 }  // namespace
 
 BranchWatch::BranchWatch(const network::Program& program, network::Workspace& workspace, double begin,
@@ -74,7 +78,7 @@ BranchWatch::BranchWatch(const network::Program& program, network::Workspace& wo
       workspace_(workspace),
       file_(file),
       span_(options.until - begin),
-      row_(span_ / std::max(1, options.samples - 1)),
+      apart_(span_ / std::max(kFewestPlaces, options.samples - 1)),
       resolution_(1e-10 * span_),
       judged_(program.loops().size()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
@@ -86,7 +90,7 @@ BranchWatch::BranchWatch(const network::Program& program, network::Workspace& wo
 }
 
 std::optional<double> BranchWatch::find(double from, double to, const Interpolant& solution) {
-  return unseen_ ? search(from, to, row_, solution) : std::nullopt;
+  return unseen_ ? search(from, to, apart_, solution) : std::nullopt;
 }
 
 std::optional<double> BranchWatch::search(double from, double to, double longest,

@@ -83,7 +83,7 @@ class BranchWatch {
   const network::Program& program_;
   network::Workspace& workspace_;
   const std::string& file_;
-  double span_, row_, resolution_;       ///< [s]
+  double span_, apart_, resolution_;     ///< [s]
   bool any_ = false;                     ///< any loop has branches
   bool unseen_ = false;                  ///< one that no derivative needs
   std::vector<bool> told_;               ///< of each loop: there is nothing to tell, or it has been told

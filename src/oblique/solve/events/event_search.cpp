@@ -134,17 +134,21 @@ void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
   at.time = t;
   const auto beside = slide_beside(t, solution);
   std::optional<network::Evaluation> here;
-  const double reached = evaluate_along_branch(reached_, t, workspace_, [&](double time) {
-    solution.states_at(time, states_);
-    here.reset();
-    if (!slide_.active() || slide_.evaluate(time, states_, false))
-      here = program_.event_functions(time, states_.data(), event_functions_.data(), workspace_);
-    return here.has_value();
-  });
-  reached_ = reached;
+  if (!(t > branch_end_)) {
+    reached_ = evaluate_along_branch(reached_, t, workspace_, [&](double time) {
+      solution.states_at(time, states_);
+      here.reset();
+      if (!slide_.active() || slide_.evaluate(time, states_, false))
+        here = program_.event_functions(time, states_.data(), event_functions_.data(), workspace_);
+      return here.has_value();
+    });
+  }
   if (!here) {
-    if (workspace_.trouble().failure != network::LoopFailure::lost)
-      throw loop_error(program_, workspace_.trouble(), t, file_);
+    if (!(t > branch_end_)) {
+      if (workspace_.trouble().failure != network::LoopFailure::lost)
+        throw loop_error(program_, workspace_.trouble(), t, file_);
+      if (reached_ < t) branch_end_ = reached_;
+    }
     // The branch may end because a switch is due that does not depend on it.
     solution.states_at(t, states_);
     workspace_.pass_failing_loops(true);
@@ -186,6 +190,7 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
   begin_ = from;
   end_ = sample_times.empty() ? from : sample_times.back();
   reached_ = sample_times.empty() ? from : sample_times.back();  // where the solver was last
+  branch_end_ = kInfinity;
   sample(from, solution, left);
   // Where the solver starts anew an event function may still lie within rounding of zero on the wrong side.
   for (double& value : left.crossed) value = std::min(value, 0.0);
@@ -221,6 +226,14 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
     }
   }
   return std::nullopt;
+}
+
+/// Goes on behind a sample before which nothing is due. Where event functions were there tells whether they
+/// have left their place, should they come back within the same part.
+void EventSearch::pass(Sample& at) {
+  for (double& value : at.crossed) value = std::min(value, 0.0);
+  for (std::size_t s = 0; s < at.event_functions.size(); ++s)
+    thresholds_.note_excursion(s, at.event_functions[s]);
 }
 
 /// Notes on which side every event function lies that may turn over, and takes its slack from those that are
@@ -284,7 +297,7 @@ std::optional<EventSearch::Found> EventSearch::between(const Sample& from, const
   }
   splits_left_ = kMostSplits;
   if (auto found = split(from, middle, errors, 0, solution)) return found;
-  for (double& value : middle.crossed) value = std::min(value, 0.0);
+  pass(middle);
   return split(middle, to, errors, 0, solution);
 }
 
@@ -347,7 +360,7 @@ std::optional<EventSearch::Found> EventSearch::split(const Sample& from, const S
     after[k] = std::min(2 * std::pow(1 - at, 4), 1.0) * largest;
   }
   if (auto found = split(from, between, before, depth + 1, solution)) return found;
-  for (double& value : between.crossed) value = std::min(value, 0.0);
+  pass(between);
   return split(between, to, after, depth + 1, solution);
 }
 

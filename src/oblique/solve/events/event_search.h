@@ -76,6 +76,7 @@ class EventSearch {
                              int depth, const Interpolant& solution);
   Found locate(Sample from, Sample to, const Interpolant& solution);
   double edge_of_slide(const Sample& beyond, const Interpolant& solution);
+  void pass(Sample& at);
   void leave_behind(Sample& at);
   void let_go(Sample& at, const Interpolant& solution);
 
@@ -89,6 +90,7 @@ class EventSearch {
   double nearest_ = 0;          ///< see `nearest`
   double begin_ = 0, end_ = 0;  ///< [s] of the search
   double reached_ = 0;          ///< [s] where the event functions were evaluated last
+  double branch_end_ = 0;       ///< [s] beyond which the branch of an algebraic loop is lost in this search
   Sample part_begin_;           ///< of the part between two samples that is searched
   double samples_left_ = std::numeric_limits<double>::infinity();
   Interruption interruption_;

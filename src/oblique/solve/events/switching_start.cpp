@@ -19,6 +19,8 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
                  std::vector<double>& x, EventLog& log, const std::string& file) {
   constexpr double kUnitRounding = std::numeric_limits<double>::epsilon();
   constexpr long kMostRoundsInCircle = 10'000;  // each may bring them nearer by a thousandth only
+  constexpr long kRoundsToJudge = 100;          // of which a thousandth each leaves nine tenths
+  constexpr double kNearer = 0.95;
   const long starts = std::count_if(program.states().begin(), program.states().end(),
                                     [](const network::State& state) { return state.start_node.has_value(); });
   std::vector<double> signals(program.n_signals());
@@ -27,19 +29,22 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
   // it is passed over, and sought anew from where it stood once they are.
   std::vector<double> unknowns;
   for (std::size_t u = 0; u < program.unknowns().size(); ++u) unknowns.push_back(workspace.unknown(u));
-  bool changes = true, finite = true, there = false, moved = false;
-  for (long round = 0; changes && finite && round <= starts + kMostRoundsInCircle; ++round) {
+  bool changes = true, finite = true, there = false, moved = false, nearer = true;
+  double change = 0, judged = std::numeric_limits<double>::infinity();
+  for (long round = 0; changes && finite && nearer && round <= starts + kMostRoundsInCircle; ++round) {
     workspace.pass_failing_loops(!there);
     const auto here = program.signals(t, x.data(), signals.data(), workspace);
     workspace.pass_failing_loops(false);
     if (!here) throw loop_error(program, workspace.trouble(), t, file);
     changes = false;
+    change = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       const auto value = here->start_value(i);
       if (!value) continue;
       const bool same = std::abs(*value - x[i]) <= 4 * kUnitRounding * (1 + std::abs(*value));
       if (same && std::isfinite(*value)) continue;
       changes = true;
+      change = std::max(change, std::abs(*value - x[i]));
       finite = finite && std::isfinite(*value);
       // A chain of starts is through after as many rounds as it is long.
       if (round > starts && std::find(circle.begin(), circle.end(), i) == circle.end()) circle.push_back(i);
@@ -54,10 +59,15 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
       x[i] = *value;
     }
     moved = moved || changes;
+    if (round > starts && round % kRoundsToJudge == 0) {
+      nearer = change < kNearer * judged;
+      judged = change;
+    }
     if (changes || std::exchange(there, true)) continue;
     for (std::size_t u = 0; moved && u < unknowns.size(); ++u) workspace.set_unknown(u, unknowns[u]);
     changes = true;  // as the next rounds may show, in which every loop is to have its solution
     round = -1;
+    judged = std::numeric_limits<double>::infinity();
   }
   if (circle.empty()) return;
   std::sort(circle.begin(), circle.end());

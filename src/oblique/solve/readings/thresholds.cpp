@@ -57,7 +57,7 @@ void Thresholds::note_side(std::size_t s, double against, double rounding, doubl
 }
 
 std::optional<double> Thresholds::leave_behind(std::size_t s, double event_function, double rounding) {
-  excursions_[s] = std::max(excursions_[s], std::abs(event_function));
+  note_excursion(s, event_function);
   if (slack_[s] == 0 || excursions_[s] <= 2 * slack_[s]) return std::nullopt;
   const double less = along_solution(s, rounding) - rounding;
   now_[s] = rounding;

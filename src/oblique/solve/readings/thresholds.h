@@ -59,6 +59,10 @@ class Thresholds {
   std::optional<double> let_since(std::size_t s) const { return let_since_[s]; }
   bool lets_any() const { return lets_ > 0; }
 
+  /// Notes how far off an event function has been on the way.
+  void note_excursion(std::size_t s, double event_function) {
+    excursions_[s] = std::max(excursions_[s], std::abs(event_function));
+  }
   /// How far the event function of a switch has been from zero since `forget`.
   double excursion(std::size_t s) const { return excursions_[s]; }
   void forget(std::size_t s) {
