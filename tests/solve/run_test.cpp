@@ -14,6 +14,7 @@
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/diagram_writer.h>
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/branch_end.h>
 #include <oblique/solve/integrator/hidden_motion.h>
 #include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/integrator/source_watch.h>
@@ -86,20 +87,37 @@ struct Growing final : OdeSystem {
   double decay;
 };
 
-// A solution that stands still where x′ = 1 errs by the length of a part of the step: it misses the equations
-// from a hundred absolute tolerances on, and what is pulled back at once errs by less.
+// A solution that moves by 0.5 where x′ = 1 errs by half the length of a part of the step: it misses the
+// equations from a hundred absolute tolerances on, and what is pulled back at once errs by less.
 TEST(HiddenMotion, IsFoundFromAHundredTolerancesOn) {
-  const std::vector<double> rests{0};
+  const StraightLine half(0, {0}, {0.5});
   const auto is_found = [&](double length, double decay) {
     Growing system(decay);
     HiddenMotion hidden(system, 1e-6, {1e-6});
     const std::vector<double> times{length, 2 * length};
+    return hidden.find(0, times, half).has_value();
+  };
+  EXPECT_FALSE(is_found(1.9e-4, 0));
+  EXPECT_TRUE(is_found(2.1e-4, 0));
+  EXPECT_TRUE(is_found(3.9e-4, 0));
+  EXPECT_FALSE(is_found(1.9e-4, -4e4));
+  EXPECT_TRUE(is_found(3.9e-4, 1e3));
+}
+
+// What moves a state that stands still may be a seed, however little it is: it is found, and then again where
+// it is ten times as much.
+TEST(HiddenMotion, IsFoundOfWhatRestsHoweverSmall) {
+  const std::vector<double> rests{0};
+  Growing system(0);
+  HiddenMotion hidden(system, 1e-6, {1e-6});
+  const auto is_found = [&](double length) {
+    const std::vector<double> times{length, 2 * length};
     return hidden.find(0, times, ConstantStates(rests)).has_value();
   };
-  EXPECT_FALSE(is_found(0.9e-4, 0));
-  EXPECT_TRUE(is_found(1.1e-4, 0));
-  EXPECT_TRUE(is_found(1.9e-4, 0));
-  EXPECT_FALSE(is_found(1.9e-4, -1e5));
+  EXPECT_FALSE(is_found(1e-101));
+  EXPECT_TRUE(is_found(1e-30));
+  EXPECT_FALSE(is_found(9e-30));
+  EXPECT_TRUE(is_found(1.1e-29));
 }
 
 TEST(Run, DoesNotDependOnTheNumberOfRows) {

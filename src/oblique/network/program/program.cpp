@@ -122,6 +122,21 @@ bool Program::derivatives_need(std::size_t loop) const {
                      [&](const ProgramCode::Step& step) { return step.loop == loop; });
 }
 
+bool Program::loop_repeats(std::size_t loop) const {
+  using Code = Instruction::Code;
+  const LoopCode& code = code_->loop_codes[loop];
+  std::vector<bool> by_unknowns(initial_slots_.size());
+  for (const std::uint32_t slot : code.unknown_slots) by_unknowns[slot] = true;
+  for (std::uint32_t k = code.body.begin; k < code.body.end; ++k) {
+    const Instruction& i = code_->tape[k];
+    const int operands = operand_count(i.code);
+    by_unknowns[i.result] =
+        by_unknowns[i.a] || (operands > 1 && by_unknowns[i.b]) || (operands > 2 && by_unknowns[i.c]);
+    if ((i.code == Code::sin || i.code == Code::cos || i.code == Code::tan) && by_unknowns[i.a]) return true;
+  }
+  return false;
+}
+
 bool Program::differentiate_loops(Workspace& workspace) const {
   const double* const slots = workspace.slots_.data();
   for (const std::uint32_t l : code_->sensitivity_order) {

@@ -107,6 +107,9 @@ class Program {
   bool loop_is_linear(std::size_t loop) const { return code_->loop_codes[loop].linear; }
   /// Whether amplifiers choose among several solutions of a loop.
   bool loop_has_branches(std::size_t loop) const { return code_->loop_codes[loop].has_branches(); }
+  /// Whether a loop has a function that repeats along its unknowns, as a sine, and so solutions in every
+  /// period.
+  bool loop_repeats(std::size_t loop) const;
   /// Whether derivatives depend on a loop.
   bool derivatives_need(std::size_t loop) const;
 

@@ -30,9 +30,10 @@ constexpr double kNoRoot = 0.3;
 
 }  // namespace
 
-GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings)
+GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, double span)
     : system_(system),
       settings_(settings),
+      span_(span),
       change_(system.size()),
       jacobian_(system.pattern().entries()),
       modes_(system.pattern()),
@@ -115,6 +116,17 @@ bool GrowthWatch::grows_by_differences(double t, std::span<const double> x,
   return matrix.eigenvalues().real().maxCoeff() >= rate / 2;
 }
 
+/// Whether errors move the time at which these states leave the equilibrium by less than the tolerance shows:
+/// a real amplifier goes from one limit to the other at once, whatever it started from.
+bool GrowthWatch::leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states,
+                                 double rate, double distance) const {
+  constexpr double kErrors = 100;  // nearer than so many the side to which it leaves is not known
+  double error = 0;
+  for (const std::size_t i : states)
+    error = std::max(error, settings_.relative_tolerance * near_distance(i, x[i]) / kNear);
+  return distance > kErrors * error && error / distance / rate < settings_.relative_tolerance * span_;
+}
+
 void GrowthWatch::judge(double t, std::span<const double> x, double step) {
   if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
   ++looked_;
@@ -145,6 +157,7 @@ void GrowthWatch::judge(double t, std::span<const double> x, double step) {
       least = std::min(least, distance_[i]);
     }
     if (!much || told) continue;
+    if (leaves_at_once(x, group.states, rate, least)) continue;
     // Near may be the part of a loop that the rest of it holds. That is asked ever more seldom.
     const std::size_t first = group.states.front();
     if (held_since_[first] > 0 && looked_ < 2 * held_since_[first]) {

@@ -26,8 +26,8 @@ struct UnseenGrowth {
 /// exactly is none of these: nothing moves there. Not installed.
 class GrowthWatch {
  public:
-  /// All must outlive the watch.
-  GrowthWatch(OdeSystem& system, const SolverSettings& settings);
+  /// `span` is the length of the run [s]. All must outlive the watch.
+  GrowthWatch(OdeSystem& system, const SolverSettings& settings, double span);
 
   /// Begins a smooth segment at (t, x).
   void restart(double t, std::span<const double> x);
@@ -44,12 +44,15 @@ class GrowthWatch {
  private:
   double near_distance(std::size_t i, double x) const;  ///< [machine unit]
   bool is_near_rest(std::span<const double> x);
+  bool leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states, double rate,
+                      double distance) const;
   void judge(double t, std::span<const double> x, double step);
   bool grows_by_differences(double t, std::span<const double> x, const std::vector<std::size_t>& states,
                             double rate);
 
   OdeSystem& system_;
   const SolverSettings& settings_;
+  double span_;
   std::vector<double> before_, change_, jacobian_;
   ModeFinder modes_;
   std::vector<double> growth_;    ///< of each state, in powers of e, while it is near an unstable equilibrium

@@ -11,6 +11,12 @@ namespace {
 /// Errors above this many tolerances are not what an accepted step leaves between its points.
 constexpr double kMostErrors = 100;
 
+/// A state rests that moves by less than this part of what the equations say there.
+constexpr double kRests = 0.1;
+/// What moves a state at rest is looked at again where it is so many times as much as ever before; what is
+/// less than so many roundings of the state, or than this [machine unit], is nothing.
+constexpr double kMore = 10, kRoundings = 1e-15, kNothing = 1e-100;
+
 }  // namespace
 
 HiddenMotion::HiddenMotion(OdeSystem& system, double relative_tolerance,
@@ -20,12 +26,29 @@ HiddenMotion::HiddenMotion(OdeSystem& system, double relative_tolerance,
       absolute_(std::move(absolute_tolerances)),
       x_(system.size()),
       rates_(system.size()),
-      derivatives_(system.size()) {}
+      derivatives_(system.size()),
+      pushes_(system.size(), 0) {}
+
+/// Whether a state that rests at t is moved there, over a part of the step, more than it ever was. How little
+/// that is does not matter: the rest may be one out of which it grows.
+bool HiddenMotion::is_pushed(double part) {
+  bool pushed = false;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double push = part * std::abs(derivatives_[i]);
+    if (!(part * std::abs(rates_[i]) < kRests * push) || push < kRoundings * std::abs(x_[i]) + kNothing ||
+        push < kMore * pushes_[i])
+      continue;
+    pushes_[i] = push;
+    pushed = true;
+  }
+  return pushed;
+}
 
 bool HiddenMotion::misses(double t, double part, const Interpolant& solution) {
   solution.states_at(t, x_);
   solution.rates_at(t, rates_);
   if (!system_.derivatives(t, x_.data(), derivatives_.data())) return true;
+  if (is_pushed(part)) return true;
   bool suspicious = false;
   const auto error = [&](std::size_t i) {
     return part * std::abs(rates_[i] - derivatives_[i]) /

@@ -15,7 +15,8 @@ namespace oblique::solve {
 ///
 /// Where something may happen inside a step (SourceWatch says where to look), the residual u′ − f(t, u) of
 /// the solution u between the solver's own points shows whether the step has seen it: over the part of a step
-/// that a sample stands for it makes an error of about |u′ − f| Δ/(1 + Δ |∂f/∂u|).
+/// that a sample stands for it makes an error of about |u′ − f| Δ/(1 + Δ |∂f/∂u|). What moves a state that
+/// rests is seen however little it is, as it may be a seed.
 class HiddenMotion {
  public:
   /// `system` must outlive this; tolerances as those of the solver, the absolute ones of each state.
@@ -30,12 +31,14 @@ class HiddenMotion {
   double seen_until() const { return seen_until_; }
 
  private:
+  bool is_pushed(double part);
   bool misses(double t, double part, const Interpolant& solution);
 
   OdeSystem& system_;
   double relative_;
   std::vector<double> absolute_;
   std::vector<double> x_, rates_, derivatives_, jacobian_;
+  std::vector<double> pushes_;  ///< [machine unit] of each state: the most that has moved it out of a rest
   double longest_ = 0, seen_until_ = 0;
 };
 

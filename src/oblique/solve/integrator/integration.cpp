@@ -26,7 +26,7 @@ Integration::Integration(const Parts& parts, MethodChoice method, const Refineme
       refinement_(refinement),
       settings_(solver_settings(parts.program.states(), parts.options, method_.method, refinement)),
       solver_(make_solver(t)),
-      growth_(parts.system, settings_),
+      growth_(parts.system, settings_, parts.options.until - t),
       small_(
           parts.system, settings_, parts.options.tolerance, parts.options.until - t,
           [this](double at, const double* x, double* values) { return read(at, x, values); },
@@ -36,6 +36,7 @@ Integration::Integration(const Parts& parts, MethodChoice method, const Refineme
       short_steps_(HiddenMotion(parts.system, settings_.relative_tolerance,
                                 absolute_tolerances(settings_, parts.states.size())),
                    *solver_, parts.options.until - t),
+      turning_(parts.program, parts.workspace, parts.switching),
       begin_(t) {
   if (parts_.sensitivities) cvodes_->follow(*parts_.sensitivities);
   growth_.restart(t, parts.states);
@@ -54,8 +55,47 @@ std::unique_ptr<Solver> Integration::make_solver(double t) {
   return cvodes;
 }
 
+/// Keeps the step from t short beside the turns of algebraic loops, and for `watch_places`.
+void Integration::limit_step(double t) {
+  if (turning_.any() && !turn_limit_)
+    turn_limit_ = turning_.longest_step(t, parts_.states, parts_.segments.end());
+  const double limit = std::min({short_steps_.limit(), turn_limit_.value_or(kNone), places_limit_});
+  if (limit < kNone || limits_) solver_->limit_step(limit);
+  limits_ = limit < kNone;
+}
+
+/// Behind an event all that is ahead is looked at anew: of steps that pass over many places to look at, and
+/// in which events come, the work would grow with the square of the length of the run.
+void Integration::watch_places() {
+  constexpr double kMany = 64, kLonger = 4;
+  if (any_event_ && static_cast<double>(places_) > kMany)
+    places_limit_ = length_ * kMany / static_cast<double>(places_);
+  else
+    places_limit_ *= kLonger;
+  if (places_limit_ > parts_.options.until - begin_) places_limit_ = kNone;
+  any_event_ = false;
+}
+
+void Integration::go_on(double t) {
+  any_event_ = true;
+  lost_.begin_segment(t, parts_.states);
+}
+
+/// Whether loops turn so quickly where the step has led that it may have passed over a turn: it is then to be
+/// taken anew, and shorter.
+bool Integration::turns_too_far(double from, double t) {
+  constexpr double kFaster = 4;  // than where the step began: two radians
+  if (!turning_.any()) return false;
+  turn_limit_ = turning_.longest_step(t, solver_->states(), from);
+  if (t - from <= kFaster * *turn_limit_) return false;
+  turn_limit_ = (t - from) / kFaster;
+  solver_->restart(from, parts_.states, parts_.segments.end(), parts_.segments.end() - from);
+  return true;
+}
+
 bool Integration::take_step(double& t) {
   const double from = t;
+  limit_step(t);
   try {
     t = solver_->step();
   } catch (const SolverFailure& failure) {
@@ -69,11 +109,16 @@ bool Integration::take_step(double& t) {
         restart(t);
         return false;
       case BranchWatch::Ahead::not_yet:
+        turn_limit_.reset();
         solver_->restart(t, parts_.states, parts_.segments.end(), parts_.segments.end() - t);
         return false;
       case BranchWatch::Ahead::nothing:
         throw;
     }
+  }
+  if (turns_too_far(from, t)) {
+    t = from;
+    return false;
   }
   const bool damps = settings_.method != diagram::IntegrationMethod::adams;
   parts_.switching.take_step(damps ? solver_->statistics().last_step : 0);
@@ -81,9 +126,12 @@ bool Integration::take_step(double& t) {
       parts_.sources.sample_times(from, t, *solver_, parts_.switching.slides());
   // The states are still those of `from`.
   if (short_steps_.take_back(from, parts_.states, sample_times, parts_.segments.end())) {
+    turn_limit_.reset();
     t = from;
     return false;
   }
+  places_ = sample_times.size();
+  length_ = t - from;
   parts_.segments.take_step(from, t, sample_times, *solver_);
   return true;
 }
@@ -109,6 +157,7 @@ void Integration::look_for_stiffness(double t) {
 
 void Integration::restart(double t) {
   low_steps_ = 0;
+  turn_limit_.reset();
   parts_.switching.take_step(0);
   parts_.segments.begin(t);
   solver_->restart(t, parts_.states, parts_.segments.end(), parts_.segments.length());
@@ -116,6 +165,8 @@ void Integration::restart(double t) {
 }
 
 void Integration::end_step(Segments::Passed passed, double t) {
+  any_event_ = any_event_ || passed == Segments::Passed::segment;
+  watch_places();
   if (passed == Segments::Passed::segment) {
     restart(t);
     growth_.restart(t, parts_.states);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +20,7 @@
 #include <oblique/solve/integrator/small_states.h>
 #include <oblique/solve/integrator/source_watch.h>
 #include <oblique/solve/integrator/switched_system.h>
+#include <oblique/solve/integrator/turning_loops.h>
 #include <oblique/solve/run.h>
 
 namespace oblique::solve {
@@ -55,7 +57,7 @@ class Integration {
   /// Goes on from t, where a step has ended or the segment with it.
   void end_step(Segments::Passed passed, double t);
   /// Goes on with a step at t, where switches have turned over that the states do not notice.
-  void go_on(double t) { lost_.begin_segment(t, parts_.states); }
+  void go_on(double t);
   /// Looks at the end of the run.
   void end(double t);
 
@@ -77,6 +79,9 @@ class Integration {
   bool read_outputs(double t, const double* x, double* values);
   bool read(double t, const double* x, double* values);
   void restart(double t);
+  void watch_places();
+  void limit_step(double t);
+  bool turns_too_far(double from, double t);
   void look_for_stiffness(double t);
 
   Parts parts_;
@@ -89,9 +94,17 @@ class Integration {
   SmallStates small_;
   LostOutputs lost_;
   ShortSteps short_steps_;
+  TurningLoops turning_;
+  std::optional<double> turn_limit_;               ///< [s] of the next step, where it is known
+  double places_limit_ = kNone;                    ///< [s] of a step, for the places to look at in it
+  std::size_t places_ = 0;                         ///< in the last step
+  double length_ = 0;                              ///< [s] of the last step
+  bool any_event_ = false;                         ///< within it
+  bool limits_ = false;                            ///< the solver's steps are limited
   double begin_;                                   ///< [s]
   long low_steps_ = 0, next_look_ = kFewLowSteps;  ///< see `look_for_stiffness`
   static constexpr long kFewLowSteps = 10;
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace oblique::solve

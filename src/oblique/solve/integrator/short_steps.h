@@ -26,6 +26,9 @@ class ShortSteps {
   /// A step has led to (t, x), and nothing has happened there; the solver will not pass `end`.
   void advance(double t, std::span<const double> x, double end);
 
+  /// The longest step that it allows now [s].
+  double limit() const { return seen_until_ < kNone ? kNone : limit_; }
+
   /// The solver has begun anew behind an event.
   void restart() { seen_until_ = kNone; }
 

@@ -203,3 +203,7 @@ def mean_angle_of_a_turning_vector():
 def arc_sine_between_rows():
     truths = {f"a at {t}": np.arcsin(0.999 * np.sin(11 * t)) for t in (1.3, 9.1, 10)}
     return truths | {"a maximum": np.arcsin(0.999)}
+
+
+def angle_of_the_mains():
+    return {"angle at 1": 100 * np.pi, "z at 1": 50 * np.pi}

@@ -75,3 +75,10 @@ def enzyme_in_molar():
     for t in (1, 10, 20):
         out |= {f"P at {t}": motion(t)[1] / 1000, f"c at {t}": motion(t)[0]}
     return out
+
+
+def pulse_upon_an_unstable_rest():
+    """x/√(1 − x²) = ε e^t, ε by completing the square of −t − ((t − 10)/0.1)²."""
+    seed = 1e-10 * 0.1 * np.sqrt(np.pi) * np.exp(-10 + 0.0025)
+    x = lambda t: seed * np.exp(t) / np.sqrt(1 + (seed * np.exp(t))**2)
+    return {f"x at {t}": x(t) for t in (30, 34, 42)}
