@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <Eigen/LU>
@@ -64,6 +65,18 @@ std::vector<std::uint32_t> switches_on(const network::Program& program, std::siz
   return found;
 }
 
+/// Whether a switch is the limit of an element, or of an amplifier that holds an unknown of the loop.
+bool is_limit(const network::Program& program, std::size_t loop, std::uint32_t s) {
+  const network::Switch& made = program.switches()[s];
+  const std::vector<std::size_t>& unknowns = program.loops()[loop].unknowns;
+  return made.turning == network::Turning::limits ||
+         std::any_of(unknowns.begin(), unknowns.end(), [&](std::size_t u) {
+           const network::Unknown& unknown = program.unknowns()[u];
+           return unknown.held_by_amplifier &&
+                  (unknown.name == made.block || unknown.name.starts_with(made.block + "."));
+         });
+}
+
 }  // namespace
 
 bool may_have_several(const network::Program& program, std::size_t loop) {
@@ -81,7 +94,12 @@ LoopJumps::LoopJumps(const network::Program& program, network::Workspace& worksp
       thresholds_(thresholds),
       signals_(program.n_signals()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
-    Watched watched{loop, SwitchPlacing(program, switches_on(program, loop)), directions_of(program, loop)};
+    const std::vector<std::uint32_t> switches = switches_on(program, loop);
+    std::vector<std::uint32_t> within;
+    std::copy_if(switches.begin(), switches.end(), std::back_inserter(within),
+                 [&](std::uint32_t s) { return !is_limit(program, loop, s); });
+    Watched watched{loop, SwitchPlacing(program, switches), SwitchPlacing(program, within),
+                    directions_of(program, loop)};
     // Of linear equations that nothing changes on the way there is one solution.
     if (watched.directions.size() == 0 ||
         (program.loop_is_linear(loop) && watched.placing.switches().empty()))
@@ -122,10 +140,24 @@ void LoopJumps::note(double t, std::span<const double> x) {
 void LoopJumps::place(std::size_t loop, const std::vector<double>& unknowns, double t,
                       std::span<const double> x) {
   for (Watched& watched : watched_) {
-    if (watched.loop != loop) continue;
-    workspace_.hold_loop(loop, t, unknowns, true);
-    watched.placing.place(t, x.data(), workspace_, &thresholds_);
-    workspace_.hold_loop(loop, std::numeric_limits<double>::quiet_NaN(), {}, false);
+    if (watched.loop == loop) place(loop, watched.placing, unknowns, t, x);
+  }
+}
+
+void LoopJumps::place(std::size_t loop, SwitchPlacing& placing, const std::vector<double>& unknowns, double t,
+                      std::span<const double> x) {
+  workspace_.hold_loop(loop, t, unknowns, true);
+  placing.place(t, x.data(), workspace_, &thresholds_);
+  workspace_.hold_loop(loop, std::numeric_limits<double>::quiet_NaN(), {}, false);
+}
+
+void LoopJumps::place_at_guesses(double t, std::span<const double> x) {
+  for (Watched& watched : watched_) {
+    if (watched.blind && !watched.placing.has_tables()) continue;
+    std::vector<double> guesses;
+    for (const std::size_t u : program_.loops()[watched.loop].unknowns)
+      guesses.push_back(workspace_.unknown(u));
+    place(watched.loop, watched.within, guesses, t, x);
   }
 }
 

@@ -42,6 +42,10 @@ class LoopJumps {
   void note(double t, std::span<const double> x);
   /// Puts the switches and tables of a loop where these unknowns ask for them, whether they solve it or not.
   void place(std::size_t loop, const std::vector<double>& unknowns, double t, std::span<const double> x);
+  /// The same, but for the limits of elements, at the guesses of every loop that amplifiers hold, or on which
+  /// a table acts: with the switches as they stand elsewhere it would be solved where it does not begin.
+  /// (That a guess is beyond a limit says nothing: what is behind it has not settled yet.)
+  void place_at_guesses(double t, std::span<const double> x);
   /// Looks at all loops at (t, x), where everything has settled. True where one was put elsewhere: everything
   /// is then to be settled again.
   bool settle(double t, std::span<const double> x);
@@ -53,6 +57,7 @@ class LoopJumps {
   struct Watched {
     std::size_t loop = 0;
     SwitchPlacing placing;       ///< of what turns over with the unknowns of the loop, and acts on it
+    SwitchPlacing within;        ///< of the same, but for limits
     Eigen::VectorXd directions;  ///< of each unknown: an amplifier moves as −residual, another as +residual
     bool blind = true;           ///< of elements without memory alone
     bool goes = true;            ///< at events, and where a run starts
@@ -65,6 +70,8 @@ class LoopJumps {
     Eigen::MatrixXd rates;  ///< −d residual/dz
   };
 
+  void place(std::size_t loop, SwitchPlacing& placing, const std::vector<double>& unknowns, double t,
+             std::span<const double> x);
   std::optional<Pull> pull(const Watched& watched, double t, std::span<const double> x,
                            network::Workspace& workspace);
   std::optional<Pull> pull_at(Watched& watched, const Eigen::VectorXd& z, double t, std::span<const double> x,

@@ -337,6 +337,11 @@ std::optional<double> SlidingMode::grip(std::size_t unit) const {
   return std::abs(drives(unit).apart()) / fastest;
 }
 
+bool SlidingMode::is_held(std::size_t unit) const {
+  const Drives sides = drives(unit);
+  return sides.above < 0 && sides.below > 0 && sides.weaker() > kDrives * strongest_[units_[unit]];
+}
+
 SlidingMode::Doubt SlidingMode::doubt(std::size_t unit) const {
   const Drives sides = drives(unit);
   const bool is_let_go = repulsion(unit).value_or(-1) > -kNoDrive;
@@ -387,28 +392,32 @@ bool SlidingMode::find_only_share(std::size_t unit, double most_back) {
 }
 
 /// Whether the shares of what is about to slide are about the same a moment later: those of an event function
-/// that merely stands still at this one instant are not.
+/// that merely stands still at this one instant are not, however short the moment is.
 bool SlidingMode::lasts(double t, std::span<const double> x) {
-  constexpr double kJump = 0.01;
+  constexpr double kJump = 0.01, kShorter = 0.01;
+  constexpr int kMoments = 4;
   const std::vector<double> now = shares_;
-  std::fill(moved_.begin(), moved_.end(), 0.0);
+  std::vector<double> rates(x.size(), 0.0);
   double fastest = std::numeric_limits<double>::min();
   for (const SlideSide& side : sides_) {
-    for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] += side.weight * side.dxdt[i];
+    for (std::size_t i = 0; i < rates.size(); ++i) rates[i] += side.weight * side.dxdt[i];
   }
-  for (const double rate : moved_) fastest = std::max(fastest, std::abs(rate));
-  const double dt = std::min(kSoon / fastest, kSoon * span_);
-  for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = x[i] + dt * moved_[i];
-  const auto look = [&] {
+  for (const double rate : rates) fastest = std::max(fastest, std::abs(rate));
+  const auto stays = [&](double dt) {
+    for (std::size_t i = 0; i < rates.size(); ++i) moved_[i] = x[i] + dt * rates[i];
     const KeptUnknowns kept(program_, workspace_);
-    return evaluate(t + dt, moved_);
+    bool same = evaluate(t + dt, moved_) && !(largest_jump().value_or(0) > 0);
+    for (std::size_t u = 0; same && u < now.size(); ++u)
+      same = slides_on_[u] || std::abs(shares_[u] - now[u]) < kJump;
+    shares_ = now;
+    return same;
   };
-  const bool valid = look();
-  bool stays = valid && !(largest_jump().value_or(0) > 0);
-  for (std::size_t u = 0; stays && u < now.size(); ++u)
-    stays = slides_on_[u] || std::abs(shares_[u] - now[u]) < kJump;
-  shares_ = now;
-  return evaluate(t, x) && stays;
+  // Where no state moves a moment is long beside what the time may drive.
+  const bool at_rest = kSoon * span_ < kSoon / fastest;
+  double dt = at_rest ? kSoon * span_ : kSoon / fastest;
+  bool lasting = stays(dt);
+  for (int k = 1; at_rest && !lasting && k < kMoments; ++k) lasting = stays(dt *= kShorter);
+  return evaluate(t, x) && lasting;
 }
 
 std::optional<double> SlidingMode::largest_jump() const {

@@ -9,6 +9,7 @@
 #include <oblique/solve/events/circle.h>
 #include <oblique/solve/events/switching_start.h>
 #include <oblique/solve/events/time_resolution.h>
+#include <oblique/solve/readings/lone_states.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
@@ -36,7 +37,8 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
       wrong_sides_(program, workspace, slide_, settling_, event_functions_, log_, span),
       actions_(program, workspace, event_functions_, slide_, settling_, log_, span, file),
       faint_turns_(program, workspace, span),
-      loop_jumps_(program, workspace, slide_, event_functions_.thresholds()) {
+      loop_jumps_(program, workspace, slide_, event_functions_.thresholds()),
+      lone_states_(lone_states(program)) {
   loop_jumps_.begin();
 }
 
@@ -82,6 +84,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (effect) return true;
     return std::exchange(loops_go, false) && loop_jumps_.settle(t, x);
   };
+  loop_jumps_.place_at_guesses(t, x);
   Circle circle;
   for (int round = 0;; ++round) {
     if (round > kMostRounds || circle.closes(workspace_.discrete_states(), x))
@@ -97,6 +100,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     }
   }
   if (!active()) return;
+  put_on_levels(t, x);
   settling_.tell_of_open(t, x);
   log_.record_slides({}, {}, slide_, t);
   settling_.end({});
@@ -195,6 +199,7 @@ void Switching::settle(double t, std::vector<double>& x) {
     if (!serve_events(t, x, false) && !resting_.lower(t, x)) break;
     if (round > kMostRounds) throw log_.endless("events set each other off", t);
   }
+  put_on_levels(t, x);
   log_.record_slides(slid, doubts, slide_, t);
   settling_.end(slid);
   location_.withdraw_all();
@@ -203,6 +208,34 @@ void Switching::settle(double t, std::vector<double>& x) {
   if (faint.empty()) return;
   const std::vector<double> after_turns = readings(t, x);
   if (!after_turns.empty()) faint_turns_.keep(std::move(faint), before_turns, after_turns);
+}
+
+/// Puts a state onto the switching surface along which it slides, where that is a level of it alone: there it
+/// stands. Where it stood when the slide began, a rounding or so beside it, others would integrate for as
+/// long as it lasts.
+void Switching::put_on_levels(double t, std::vector<double>& x) {
+  constexpr double kBeside = 1e-9;  // [machine unit]
+  still_.clear();
+  const std::vector<std::uint32_t>& units = slide_.units();
+  const bool any = std::any_of(units.begin(), units.end(),
+                               [&](std::uint32_t unit) { return lone_states_[unit].has_value(); });
+  if (!any || !slide_.evaluate(t, x)) return;
+  for (std::size_t u = 0; u < units.size(); ++u) {
+    const std::uint32_t unit = units[u];
+    const std::optional<std::size_t> state = lone_states_[unit];
+    if (!state || !slide_.is_held(u)) continue;
+    const std::uint32_t s = program_.switch_structure().members[unit].front();
+    const network::Evaluation& here = evaluate(t, x);
+    std::vector<double> rates(x.size(), 0.0), moving(program_.switches().size()), still(moving.size());
+    here.event_function_rates(rates.data(), still.data());
+    rates[*state] = 1;
+    here.event_function_rates(rates.data(), moving.data());
+    const double off = event_functions_[s] / (moving[s] - still[s]);
+    if (still[s] != 0 || !(std::abs(off) < kBeside)) continue;
+    x[*state] -= off;
+    still_.push_back(*state);
+  }
+  if (!still_.empty()) event_functions_.evaluate(t, x, location_.announced());
 }
 
 /// All signals and what events keep; nothing where the signals have no values.
@@ -322,7 +355,11 @@ bool Switching::inside(double t, std::span<const double> values, const Evaluate&
 
 bool Switching::derivatives(double t, const double* x, double* dxdt) {
   const std::span<double> values(dxdt, program_.n_states());
-  if (slide_.active()) return inside(t, values, [&](double at) { return slide_.derivatives(at, x, dxdt); });
+  if (slide_.active()) {
+    const bool known = inside(t, values, [&](double at) { return slide_.derivatives(at, x, dxdt); });
+    for (const std::size_t i : still_) dxdt[i] = 0;
+    return known;
+  }
   if (!inside(t, values, [&](double at) { return program_.derivatives(at, x, dxdt, workspace_); }))
     return false;
   edges_.complete_derivatives(t, x, values);

@@ -151,6 +151,7 @@ class Switching {
   std::vector<SlidingMode::Doubt> doubts_of_slide(double t, std::span<const double> x);
   std::optional<EventActions::Effect> serve_events(double t, std::vector<double>& x, bool starting);
   void settle_switches(double t, std::span<const double> x);
+  void put_on_levels(double t, std::vector<double>& x);
   std::vector<double> readings(double t, std::span<const double> x);
   bool look_at_hidden(double t, const Interpolant& solution);
   void look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution);
@@ -173,6 +174,8 @@ class Switching {
   EventActions actions_;
   FaintTurns faint_turns_;
   LoopJumps loop_jumps_;
+  std::vector<std::optional<std::size_t>> lone_states_;  ///< of each unit
+  std::vector<std::size_t> still_;                       ///< states that stand as long as what slides does
   double begin_ = -std::numeric_limits<double>::infinity(), end_ = std::numeric_limits<double>::infinity();
   std::vector<std::uint32_t> marked_;  ///< the units of the slide whose states were marked last
   int hops_ = 0;                       ///< of tables, one after the other at one instant

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +13,7 @@
 #include <oblique/network/graph/dependency_order.h>
 #include <oblique/network/program/program.h>
 #include <oblique/solve/operating_point/settling.h>
+#include <oblique/solve/readings/switch_placing.h>
 #include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
 #include <oblique/solve/stability/coupled_modes.h>
@@ -186,6 +189,32 @@ bool rest_past_loops(const network::Program& program, network::Workspace& worksp
   workspace.pass_failing_loops(false);
   if (rests) states = settled;
   return rests;
+}
+
+std::optional<std::vector<text::Diagnostic>> rest_where_they_run(const network::Program& program,
+                                                                 network::Workspace& workspace, double t,
+                                                                 std::vector<double>& states,
+                                                                 const std::string& file) {
+  constexpr double kFarAway = 100;  // [machine unit]
+  const std::vector<double> discrete_states(workspace.discrete_states().begin(),
+                                            workspace.discrete_states().end());
+  std::vector<double> moved = states;
+  settle(program, workspace, t, servo_groups(program), moved);
+  bool runs = false;
+  for (std::size_t i = 0; i < moved.size(); ++i) runs = runs || std::abs(moved[i] - states[i]) > kFarAway;
+  std::vector<std::uint32_t> switches(program.switches().size());
+  std::iota(switches.begin(), switches.end(), 0);
+  try {
+    if (runs && SwitchPlacing(program, std::move(switches)).place(t, moved.data(), workspace)) {
+      std::vector<text::Diagnostic> warnings = bring_to_rest(program, workspace, t, moved, file);
+      states = moved;
+      return warnings;
+    }
+  } catch (const SolveError&) {  // nothing holds them
+  }
+  workspace.reset();
+  workspace.load_discrete_states(discrete_states);
+  return std::nullopt;
 }
 
 }  // namespace oblique::solve

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,5 +30,14 @@ std::vector<text::Diagnostic> bring_to_rest(const network::Program& program, net
 /// over that have no solution yet; false, and `states` are as they were, where that does not settle.
 bool rest_past_loops(const network::Program& program, network::Workspace& workspace, double t,
                      std::vector<double>& states);
+
+/// The same where servo amplifiers run away from where they begin, with the switches as they stand: puts the
+/// switches where the signals ask for them then, and brings the amplifiers to rest with these. So a Schmitt
+/// trigger of a real amplifier goes to its limit. Nothing, and all is as it was, where they do not run away
+/// or nothing holds them.
+std::optional<std::vector<text::Diagnostic>> rest_where_they_run(const network::Program& program,
+                                                                 network::Workspace& workspace, double t,
+                                                                 std::vector<double>& states,
+                                                                 const std::string& file);
 
 }  // namespace oblique::solve

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/solve/operating_point/run_start.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -29,6 +30,13 @@ void refuse_singular_rates(const StartParts& parts, double t, const std::vector<
   }
 }
 
+/// Whether a limit is the machine's: what runs to it is a loop that the machine does not hold, which is to be
+/// told.
+bool any_saturates(const diagram::FlatDiagram& diagram) {
+  return std::any_of(diagram.blocks.begin(), diagram.blocks.end(),
+                     [](const diagram::FlatBlock& block) { return block.saturation.has_value(); });
+}
+
 }  // namespace
 
 std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, std::vector<double>& states) {
@@ -43,11 +51,15 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
   std::vector<text::Diagnostic> warnings;
   std::vector<double> signals(program.n_signals());
   bool held = false;  // a singular loop is, which has no derivatives
+  bool runs = false;  // amplifiers may
   const auto settle_all = [&] {
     const auto rest = [&] {
       if (!parts.options.settle) return;
       parts.workspace.pass_failing_loops(held);
-      warnings = bring_to_rest(program, parts.workspace, t, states, file);
+      auto where_they_run =
+          runs ? rest_where_they_run(program, parts.workspace, t, states, file) : std::nullopt;
+      warnings = where_they_run ? *std::move(where_they_run)
+                                : bring_to_rest(program, parts.workspace, t, states, file);
       parts.workspace.pass_failing_loops(false);
     };
     // From another start others are sought.
@@ -72,6 +84,11 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
   // What an ideal amplifier's loop is made of may have to come to rest before it has a solution.
   if (parts.options.settle && rest_past_loops(program, parts.workspace, t, states) && !trouble_of_settling())
     return warnings;
+  states = begun;
+  parts.workspace.reset();
+  runs = trouble->kind() == SolveError::Kind::no_rest && !any_saturates(parts.diagram);
+  if (runs && !trouble_of_settling()) return warnings;
+  runs = false;
   states = begun;
   parts.workspace.reset();
   if (!hold_singular_start(program, parts.workspace, t, states, parts.options.until - t))

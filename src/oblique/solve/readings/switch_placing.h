@@ -21,6 +21,7 @@ class SwitchPlacing {
   /// The switches, and what they and their tables set.
   const std::vector<std::uint32_t>& switches() const { return switches_; }
   const std::vector<std::uint32_t>& discrete_states() const { return discrete_states_; }
+  bool has_tables() const { return !tables_.empty(); }
 
   /// Puts them where the signals at (t, x) ask for them, again and again until all stand so; one whose event
   /// function is within its threshold, where such are given, stays. False where they lead each other in a

@@ -109,3 +109,21 @@ def bateman_chain():
 
 def logarithm_of_a_decay():
     return {"log_x at 20": -20.0, "log_x at 60": -60.0, **{f"log_y at {t}": 30 * np.sin(t) for t in (5, 11, 60)}}
+
+
+def resistor_of_straight_lines():
+    """On the third line until x = −1, at 1.9, and then on the first."""
+    line = lambda t: (0.9 - t + 3) / 2
+    return {"y at 0": line(0), "y at 1": line(1), "z at 1": 1.95 - 0.25, "y at 2.5": (0.9 - 2.5 - 3) / 2}
+
+
+def comparator_by_its_amplifier():
+    return {"y at 0": 2.5, "y at 1": 2.5}
+
+
+def schmitt_trigger_of_a_real_amplifier():
+    turns = [np.pi / 6 + k * np.pi for k in range(4)]
+    z, sign = 0.0, 1
+    for begin, end in zip([0, *turns], [*turns, 10]):
+        z, sign = z + sign * (end - begin), -sign
+    return {"c at 0": 1.0, "c at 5": 1.0, "z at 10": z}

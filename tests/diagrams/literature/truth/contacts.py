@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Contacts: friction in a row, play with stiff flanks."""
 import numpy as np
+from scipy.optimize import brentq
 
 from .mechanics import _friction
 from .tools import Motion
@@ -41,3 +42,25 @@ def stiff_backlash():
                             max_step=0.005)
             contact = (1, -1)[hit] if hit is not None else 0
     return {"x1 at 2": motion(2)[0], "x2 at 6": motion(6)[2], "v2 at 6": motion(6)[3]}
+
+
+def shaken_for_long():
+    """v = v0 + 5 (cos 2πt0 − cos 2πt)/2π ∓ (t − t0) from one zero of v to the next; stuck while |5 sin 2πt| < 1."""
+    w = 2 * np.pi
+    t, v, x, sign = np.arcsin(0.2) / w, 0.0, 0.0, 1
+    while True:
+        speed = lambda s: v + 5 * (np.cos(w * t) - np.cos(w * s)) / w - sign * (s - t)
+        way = lambda s: ((v + 5 * np.cos(w * t) / w) * (s - t) - 5 * (np.sin(w * s) - np.sin(w * t)) / w**2
+                         - sign * (s - t)**2 / 2)
+        places = t + np.linspace(1e-6, 1, 2001)
+        after = next(k for k, s in enumerate(places) if sign * speed(s) < 0)
+        end = brentq(speed, places[after - 1], places[after], xtol=1e-15)
+        if end > 1000:
+            return {"v at 1000": speed(1000), "x at 1000": x + way(1000)}
+        x += way(end)
+        t, v, sign = end, 0.0, -sign
+        assert abs(5 * np.sin(w * t)) > 1 and sign * np.sin(w * t) > 0  # it does not stick again
+
+
+def stuck_for_long():
+    return {"x at 100": 0.0003, "v at 100": 0.0}
