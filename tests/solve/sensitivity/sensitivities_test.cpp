@@ -207,6 +207,44 @@ TEST(Sensitivities, OfWhatAnEventSetsAtTheStart) {
 }
 
 // With a later pulse x would begin later, and with an earlier one its begin would lie before the run.
+// It takes the state with it, whose start is the parameter: the held sample of 2 e^(−t) at 0 is the start.
+TEST(Sensitivities, OfAStateThatAnEventStoresAtTheStart) {
+  const Compiled made(
+      "x = { type = \"integrator\", in = \"-x\", initial = 2 }\n"
+      "y = { type = \"delay-line\", in = \"x\", delay = 0.52, stages = 1, straight = 0 }\n");
+  const auto run = differentiated(made, {"x.initial"}, 1);
+  expect_column(run, "d(y)/d(x.initial)", kTolerance, [&](double t) {
+    return t < 0.52 ? 0 : 1;  // 0.52 is in no row
+  });
+}
+
+// Where nothing is integrated that a switch acts on, the solver goes on through its turns: max(sin 2t, c) is
+// c from π/4 … on, and a limiter lets nothing through beyond its limits.
+TEST(Sensitivities, FollowSwitchesThatActOnOutputsAlone) {
+  const Compiled made(
+      "u = { type = \"time-function\", formula = \"sin(2*time)\" }\n"
+      "c = { type = \"constant\", value = 0.3 }\n"
+      "m = { type = \"maximum\", x = \"u\", y = \"c\" }\n"
+      "x = { type = \"integrator\", in = \"-x\", initial = 2 }\n"
+      "l = { type = \"limiter\", in = \"x\", low = -1, high = 1 }\n");
+  const auto run = differentiated(made, {"c.value", "x.initial"}, 3);
+  expect_column(run, "d(m)/d(c.value)", kTolerance, [](double t) { return std::sin(2 * t) > 0.3 ? 0 : 1; });
+  expect_column(run, "d(l)/d(x.initial)", kTolerance,
+                [](double t) { return 2 * std::exp(-t) > 1 ? 0 : std::exp(-t); });
+}
+
+// q + q |q| = p, solved by an ideal amplifier: dq/dp = 1/(1 + 2 |q|).
+TEST(Sensitivities, ThroughAMagnitudeInALoop) {
+  const Compiled made(
+      "p = { type = \"constant\", value = 2 }\n"
+      "m = { type = \"absolute-value\", in = \"q\" }\n"
+      "w = { type = \"multiplier\", x = \"q\", y = \"m\" }\n"
+      "q = { type = \"servo-amplifier\", in = [\"q\", \"w\", \"-p\"], gain = \"inf\", bandwidth = \"inf\" "
+      "}\n");
+  expect_column(differentiated(made, {"p.value"}), "d(q)/d(p.value)", 1e-12,  // without a state, to rounding
+                [](double) { return 1.0 / 3; });
+}
+
 TEST(Sensitivities, RefuseWhatTurnsOverJustAtTheStart) {
   const Compiled made(
       "p = { type = \"pulse-train\", period = 1, width = 0.3 }\n"

@@ -347,6 +347,7 @@ NodeId ExpressionGraph::partial(NodeId id, int operand) {
         .id;
   }
   if (node.op == Op::table_value && operand == 0) return apply(Op::table_slope, node.b, node.c);
+  if (node.op == Op::gate) return operand == 0 ? node.b : node.a;
   return constant(0);  // switches, steps and tables: nothing but events changes them
 }
 

@@ -20,7 +20,7 @@ constexpr double kSoon = 1e-3;     ///< of a step
 
 /// What events keep may act on the states later: by when they came, as sensitivities see it, or in a loop
 /// that is looked at only along its branch.
-Segments::Segments(const Parts& parts) : parts_(parts), memories_act_(!parts.options.sensitivity.empty()) {
+Segments::Segments(const Parts& parts) : parts_(parts), memories_act_(follows_sensitivities()) {
   for (std::size_t loop = 0; loop < parts.program.loops().size(); ++loop)
     memories_act_ = memories_act_ || parts.program.loop_has_branches(loop);
 }
@@ -149,7 +149,9 @@ Segments::Passed Segments::pass(double& t) {
   bool settled = false;
   if (step_.event && !step_.branch_end && *step_.event < step_.end && *step_.event < end_) {
     settled = true;
-    const bool without_effect = turns_without_effect(*step_.event, step_.times_left(), *step_.solution);
+    // What has no effect on the states may have one on their sensitivities, and on those of the outputs.
+    const bool without_effect =
+        turns_without_effect(*step_.event, step_.times_left(), *step_.solution) && !follows_sensitivities();
     parts_.switching.let_pass(without_effect);
     if (without_effect) {
       step_.begin = *step_.event;
@@ -163,7 +165,7 @@ Segments::Passed Segments::pass(double& t) {
     step_.solution->states_at(t, parts_.states);
     if (parts_.switching.lets_pass()) parts_.switching.known_wait(t, parts_.states);  // what is due with it
     settled = true;
-    parts_.switching.let_pass(stands(t));
+    parts_.switching.let_pass(stands(t) && !follows_sensitivities());
   }
   pass_end(t, branch_end, settled);
   return Passed::segment;

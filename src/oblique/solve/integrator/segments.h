@@ -79,6 +79,7 @@ class Segments {
   bool turns_without_effect(double at, std::span<const double> sample_times, const Interpolant& solution);
   std::optional<double> find_event();
   bool stands(double t);
+  bool follows_sensitivities() const { return !parts_.options.sensitivity.empty(); }
   std::vector<double> rates_behind(double t);
 
   /// The step that was taken, from the beginning of its next piece, and what ends that.

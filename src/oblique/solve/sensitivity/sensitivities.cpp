@@ -229,14 +229,25 @@ void Sensitivities::output_by_states(double t, std::span<const double> x, std::s
   }
 }
 
-/// Where f of a state is held at zero, ∂f/∂x s + ∂f/∂p is; where it is given by a value, s is the derivative
-/// of that: one linear system for all.
+/// States may start from what events have set at the start, and that from where states start.
 void Sensitivities::start(double t, std::span<const double> x, const network::Workspace& run,
                           bool from_state) {
+  constexpr int kMostRounds = 3;
   load(run);
   if (from_state) return;
-  start_memories(t, x, run);
-  refuse_turns_at_start(t, x);
+  for (int round = 0;; ++round) {
+    start_memories(t, x, run);
+    if (round == 0) refuse_turns_at_start(t, x);
+    const std::vector<std::vector<double>> before = states_;
+    start_states(t, x);
+    if (states_ == before) return;
+    if (round == kMostRounds) refuse(t, "what is stored and the states start from each other");
+  }
+}
+
+/// Where f of a state is held at zero, ∂f/∂x s + ∂f/∂p is; where it is given by a value, s is the derivative
+/// of that: one linear system for all.
+void Sensitivities::start_states(double t, std::span<const double> x) {
   const auto n = static_cast<Eigen::Index>(run_states_.size());
   const std::vector<double> starts = program_->start();
   evaluate_or_refuse(t, x, {});
@@ -306,6 +317,7 @@ void Sensitivities::start_memories(double t, std::span<const double> x, const ne
     if (!positions[m]) discrete_states_[m] = fresh.discrete_state(static_cast<std::uint32_t>(m));
   }
   before_.x.assign(x.begin(), x.end());
+  memories_.assign(count(), std::vector<double>(n_discrete_states_));
   std::vector<std::vector<double>> memories = memories_;
   for (std::size_t m = 0; m < n_discrete_states_; ++m) {
     if (now[m] == discrete_states_[m]) continue;
@@ -315,7 +327,7 @@ void Sensitivities::start_memories(double t, std::span<const double> x, const ne
     if (!action)
       refuse(t, "several events one after the other have set a discrete state where the run starts");
     for (std::size_t k = 0; k < count(); ++k) {
-      evaluate_or_refuse(t, x, {0, {}, k});
+      evaluate_or_refuse(t, x, {0, states_[k], k});
       memories[k][m] = values_[*action + 1];
     }
   }

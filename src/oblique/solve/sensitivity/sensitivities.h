@@ -71,6 +71,7 @@ class Sensitivities {
   void evaluate_or_refuse(double t, std::span<const double> x, const Direction& along);
   bool differentiate_rates(double t, const double* x);
   void load(const network::Workspace& run);
+  void start_states(double t, std::span<const double> x);
   void start_memories(double t, std::span<const double> x, const network::Workspace& run);
   void refuse_turns_at_start(double t, std::span<const double> x);
   /// Of each discrete state: whether a switch or the timeline sets it, and no event.
