@@ -33,6 +33,7 @@ const std::multimap<std::string, std::string> kImperfect{
     {"servo-amplifier", "gain = 5, limit = 0.4, capacitor = 0.02, offset = 0.1, drift = 0.1, noise = 0.1"},
     {"servo-amplifier", "gain = inf, capacitor = 0.5, limit = 0.4, noise = 0.1"},
     {"servo-amplifier", "gain = 5, bandwidth = inf, limit = 0.4, noise = 0.1"},
+    {"transfer-lag", "time_constant = 0.5, gain = 2, limit = 0.4"},
     {"servo-multiplier", "time_constant = 0.1, velocity_limit = 0.5, dead_zone = 0.1"},
     {"servo-multiplier", "velocity_limit = 0.5, dead_zone = 0.1"},
     {"servo-resolver", "time_constant = 0.1, velocity_limit = 0.5, dead_zone = 0.1"},
