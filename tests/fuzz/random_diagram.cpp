@@ -85,6 +85,7 @@ class Writer {
     for (std::size_t k = 0; k < plan_.blocks.size(); ++k) lines.push_back(line_of(k));
     for (std::size_t k = 0; k < lines.size(); ++k)
       out += lines[writing_.order.empty() ? k : writing_.order[k]];
+    out += offsets_;
     out += "[outputs]\n";
     for (std::size_t k = 0; k < plan_.blocks.size(); ++k) {
       out += fmt::format("y{} = {{ signal = \"{}\", scale = {} }}\n", k, signal({1, k, 0}),
@@ -110,23 +111,45 @@ class Writer {
     return number * (1 + ((signs_() & 1U) != 0 ? writing_.disturbance : -writing_.disturbance));
   }
 
-  std::string term(const Wire& wire, const PortKind& port) {
+  /// Blocks that do something else beside a level of what they read.
+  static bool compares(const BlockKind& kind) {
+    constexpr std::string_view kTypes[] = {"comparator", "sign", "relay", "electronic-switch", "multiplexer"};
+    const bool jumps = std::any_of(kind.parameters.begin(), kind.parameters.end(),
+                                   [](const ParameterKind& p) { return p.form == Form::jumping_curve; });
+    return jumps || std::find(std::begin(kTypes), std::end(kTypes), kind.type) != std::end(kTypes);
+  }
+
+  /// The signal of a wire with an offset, as that of a summer of its own.
+  std::string offset_signal(const Wire& wire) {
+    if (offsets_.empty()) offsets_ = "unity = { type = \"constant\", value = 1 }\n";
+    const std::string name = fmt::format("offset{}", ++n_offsets_);
+    const char* const sign = plan_.inverting ? "-1" : "1";
+    const double off = (signs_() & 1U) != 0 ? writing_.offset : -writing_.offset;
+    offsets_ += fmt::format("{} = {{ type = \"summer\", in = [\"{}*{}\", \"{}*unity\"] }}\n", name, sign,
+                            signal(wire), off);
+    return name;
+  }
+
+  std::string term(const Wire& wire, const PortKind& port, bool with_offset) {
     const Dimension from = plan_.blocks[wire.block].kind->outputs[wire.output].dimension;
     const double scale = factor_of(port.dimension, writing_) / factor_of(from, writing_);
-    return fmt::format("\"{}*{}\"", disturbed(wire.weight) * scale, signal(wire));
+    const double weight = disturbed(wire.weight) * scale;
+    return fmt::format("\"{}*{}\"", weight, with_offset ? offset_signal(wire) : signal(wire));
   }
 
   std::string line_of(std::size_t index) {
     const PlannedBlock& block = plan_.blocks[index];
+    const bool with_offset = writing_.offset != 0 && plan_.profile == "ideal" && compares(*block.kind);
     std::string line = fmt::format("{} = {{ type = \"{}\"", name(index), block.kind->type);
     for (const auto& [port, wires] : block.inputs) {
       line += fmt::format(", {} = ", port->name);
       if (!port->is_sum) {
-        line += term(wires.front(), *port);
+        line += term(wires.front(), *port, with_offset);
         continue;
       }
       line += "[";
-      for (std::size_t k = 0; k < wires.size(); ++k) line += (k == 0 ? "" : ", ") + term(wires[k], *port);
+      for (std::size_t k = 0; k < wires.size(); ++k)
+        line += (k == 0 ? "" : ", ") + term(wires[k], *port, with_offset);
       line += "]";
     }
     for (const auto& [parameter, planned] : block.parameters) {
@@ -157,6 +180,8 @@ class Writer {
   const DiagramPlan& plan_;
   const Writing& writing_;
   std::mt19937 signs_;
+  std::string offsets_;  ///< lines of blocks that only `offset` needs
+  int n_offsets_ = 0;
 };
 
 }  // namespace

@@ -47,14 +47,15 @@ struct DiagramPlan {
 /// blocks that nothing uses.
 DiagramPlan plan_diagram(Dice& dice);
 
-/// How a plan is written. None of these changes what the diagram does, but for `disturbance`; values and
-/// times are scaled by powers of two, which is exact.
+/// How a plan is written. None of these changes what the diagram does, but for `disturbance` and `offset`;
+/// values and times are scaled by powers of two, which is exact.
 struct Writing {
   enum class Names { rising, falling };
   Names names = Names::rising;
   std::vector<std::size_t> order;  ///< of the blocks in the file; empty: as planned
   double value = 1, time = 1;
   double disturbance = 0;   ///< relative, of every number, with random signs
+  double offset = 0;        ///< [machine unit] of what comparisons read, with random signs
   std::uint32_t signs = 1;  ///< that choose them
   double samples = 41;      ///< rows
 };

@@ -93,6 +93,10 @@ bool sought_in_vain(const Trial& trial) {
 /// A thousand tolerances: a run is calibrated to some ten, and the worst of smooth problems has sixty.
 constexpr double kTolerances = 1e3;
 
+/// [machine unit] within which a comparison that comes to rest at its level has no certain result: ten times
+/// what the engine takes for the level itself (see known-gaps.md).
+constexpr double kOfLevels = 1e-12;
+
 class Examination {
  public:
   explicit Examination(const DiagramPlan& plan)
@@ -255,6 +259,7 @@ class Examination {
   Writing disturbed(std::uint32_t signs) const {
     Writing writing;
     writing.disturbance = kTolerances * plan_.tolerance;
+    writing.offset = kOfLevels;
     writing.signs = signs;
     return writing;
   }
