@@ -152,12 +152,15 @@ void LoopJumps::place(std::size_t loop, SwitchPlacing& placing, const std::vecto
 }
 
 void LoopJumps::place_at_guesses(double t, std::span<const double> x) {
+  begin();
   for (Watched& watched : watched_) {
     if (watched.blind && !watched.placing.has_tables()) continue;
     std::vector<double> guesses;
     for (const std::size_t u : program_.loops()[watched.loop].unknowns)
       guesses.push_back(workspace_.unknown(u));
     place(watched.loop, watched.within, guesses, t, x);
+    // From line to line of a table, as no Newton's method goes.
+    if (!watched.blind && watched.placing.has_tables()) go_from_before(watched, t, x);
   }
 }
 

@@ -117,6 +117,12 @@ def resistor_of_straight_lines():
     return {"y at 0": line(0), "y at 1": line(1), "z at 1": 1.95 - 0.25, "y at 2.5": (0.9 - 2.5 - 3) / 2}
 
 
+def cubic_by_straight_lines():
+    """From −1, where the cubic is 0, to −0.9, where it is 0.171."""
+    y = -1 + 0.1 * 0.1 / (0.9 - 0.9**3)
+    return {"y at 0": y, "y at 1": y}
+
+
 def comparator_by_its_amplifier():
     return {"y at 0": 2.5, "y at 1": 2.5}
 
