@@ -277,7 +277,9 @@ std::optional<double> Switching::search(double from, std::span<const double> sam
 
 const Interpolant& Switching::looked_at(double t, const Interpolant& solution) {
   constexpr double kNear = 1e4;  // tolerances of a machine unit
-  if (!event_functions_.steps_damp() || !(location_.nearest() < kNear * tolerance_)) return solution;
+  if (program_.switches().empty() || !event_functions_.steps_damp() ||
+      !(location_.nearest() < kNear * tolerance_))
+    return solution;
   std::vector<double> x(program_.n_states());
   solution.states_at(t, x);
   workspace_.pass_failing_loops(true);  // the branch of one may end within the step
