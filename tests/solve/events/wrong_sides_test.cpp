@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Comparisons that lie on the other side within the errors of what they compare.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,42 @@ TEST(WrongSides, AreNoMoreWithTheRemedy) {
     EXPECT_THAT(run.warnings, IsEmpty());
     expect_both_turns(run);
   }
+}
+
+// A lag of 10 ns follows a sine by 1e-8 cos t, less than its error, and yet its sign turns over with the
+// cosine: at π/2 and 5π/2 that of −cos t becomes positive, whatever method makes the steps, and
+// whether it damps what is fast or not. A turn may be late by what the damped errors are (1e-13) over 1e-8 a
+// second, and with the coarse tolerance by a part of a step.
+TEST(WrongSides, OfWhatFollowsQuicklyTurnOverByAnyMethod) {
+  const Compiled made(R"toml(
+x = { type = "sine-source", frequency = "1/(2*pi)" }
+l = { type = "transfer-lag", in = "x", time_constant = 1e-8 }
+c = { type = "comparator", in = ["-x", "l"] }
+n = { type = "counter", clock = "c" }
+)toml");
+  for (const double tolerance : {1e-5, 1e-8}) {
+    for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
+                              diagram::IntegrationMethod::rodas}) {
+      const solve::Run run = run_of(made, {.until = 8.5, .tolerance = tolerance, .method = method});
+      EXPECT_EQ(row_values(run, "n.out").back(), 2) << tolerance << ' ' << static_cast<int>(method);
+    }
+  }
+}
+
+// The voltage over a diode of a billionth of its load is below its error all the time that it conducts: at 5
+// s, behind v′ = −v/10 from where tan t = −10 on, nothing is left of what it let through.
+TEST(WrongSides, OfADiodeEndItsConductionByAdams) {
+  const Compiled made(R"toml(
+u = { type = "sine-source", frequency = "1/(2*pi)" }
+d = { type = "summer", in = ["u", "-v"] }
+i = { type = "diode", in = "d", resistance = 1e-8 }
+v = { type = "integrator", in = ["i", "-0.1*v"] }
+)toml");
+  const double ends = 3.141592653589793 - std::atan(10.0);
+  const double at_end = std::sin(ends) * std::exp(-0.1 * (5 - ends));
+  const solve::Run run =
+      run_of(made, {.until = 5, .tolerance = 1e-8, .method = diagram::IntegrationMethod::adams});
+  EXPECT_NEAR(row_values(run, "v").back(), at_end, 1e-6);  // 100 tolerances
 }
 
 }  // namespace

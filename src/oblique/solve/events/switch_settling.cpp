@@ -92,7 +92,7 @@ bool SwitchSettling::is_near(std::size_t s) const {
 bool SwitchSettling::waits(std::size_t s, double event_function, double t) {
   constexpr double kSlow = 1000;  // errors, in the time since it turned over last
   const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_function);
-  const double may_be_near = unrest_[s].touches ? event_functions_.thresholds()[s] : rounding;
+  const double may_be_near = unrest_[s].touch ? event_functions_.thresholds()[s] : rounding;
   if (starting_ || near_size(s) > may_be_near || is_announced(program_.switch_structure().unit[s]))
     return false;
   const bool is_put_on_zero = set_ && event_function == 0 && before_instant_[s] != 0;
@@ -123,7 +123,7 @@ void SwitchSettling::turn(std::size_t s, double position, double t) {
   if (!same_place) unrest.turns = 0;
   if (!known) watch_pace(s, t);
   unrest.last = t;
-  unrest.touches = false;
+  unrest.touch.reset();
   thresholds.forget(s);
   // An event function that is merely touched goes back and forth by the errors of the states.
   if (!known && is_announced(program_.switch_structure().unit[s]))
@@ -468,7 +468,7 @@ void SwitchSettling::let_touch(std::size_t s) {
   if (event_functions_.is_known(s) || !(std::abs(event_functions_[s]) <= error)) return;
   event_functions_.thresholds().forget(s);
   event_functions_.thresholds().widen(s, error);
-  unrest_[s].touches = true;
+  if (!unrest_[s].touch) unrest_[s].touch = std::abs(event_functions_[s]);
 }
 
 void SwitchSettling::restore(std::vector<bool> sliding) {

@@ -61,8 +61,8 @@ class SwitchSettling {
   bool stays(std::size_t s) const { return stays_[s]; }
   /// When a switch turned over last [s]; 0 where it has not.
   double last_turn(std::size_t s) const { return unrest_[s].last; }
-  /// Whether a switch has been let touch since.
-  bool touches(std::size_t s) const { return unrest_[s].touches; }
+  /// Where a switch has been let touch since: how far off zero its event function was at first.
+  std::optional<double> touch(std::size_t s) const { return unrest_[s].touch; }
 
  private:
   using Units = std::vector<std::uint32_t>;
@@ -121,7 +121,7 @@ class SwitchSettling {
   struct Unrest {
     double last = 0;
     long turns = 0;
-    bool touches = false;  ///< since it turned over last it was announced, and did not
+    std::optional<double> touch;  ///< since it turned over last it was announced so far off, and did not
     EventPace pace;
     std::optional<double> piles_up;  ///< [s] its turns, which have come ever faster
     long beyond = 0;                 ///< turns after that, within the errors of the states

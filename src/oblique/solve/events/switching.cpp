@@ -277,7 +277,7 @@ std::optional<double> Switching::search(double from, std::span<const double> sam
 
 const Interpolant& Switching::looked_at(double t, const Interpolant& solution) {
   constexpr double kNear = 1e4;  // tolerances of a machine unit
-  if (program_.switches().empty() || !event_functions_.steps_damp() ||
+  if (program_.switches().empty() || !event_functions_.any_step() ||
       !(location_.nearest() < kNear * tolerance_))
     return solution;
   std::vector<double> x(program_.n_states());
@@ -294,7 +294,7 @@ bool Switching::look_at_hidden(double t, const Interpolant& solution) {
   std::vector<double> x(program_.n_states());
   solution.states_at(t, x);
   event_functions_.evaluate(t, x, location_.announced());
-  const bool overlooked = event_functions_.steps_damp() && wrong_sides_.limit_slack();
+  const bool overlooked = event_functions_.any_step() && wrong_sides_.limit_slack();
   if (!overlooked) wrong_sides_.tell(resting_, t, x);
   event_functions_.evaluate(t, x, location_.announced());  // back to the solutions of the loops
   return overlooked;

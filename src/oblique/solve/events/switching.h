@@ -101,10 +101,11 @@ class Switching {
   bool jacobian(double t, const double* x, double* values);
   bool signals(double t, const double* x, double* values);
 
-  /// A step of this length [s] has led to where events are searched for next; it damps what is fast, or is 0.
-  void take_step(double length) {
+  /// A step of this length [s] has led to where events are searched for next, by a method that damps what is
+  /// fast, or not; 0: there has been none.
+  void take_step(double length, bool damps = true) {
     event_functions_.take_steps(length, slide_.units());
-    wrong_sides_.take_step();
+    wrong_sides_.take_step(damps);
   }
 
   /// The solution within a step that ends at t, by which to look at it: with its errors damped where an event

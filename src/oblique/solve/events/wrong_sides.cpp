@@ -29,14 +29,17 @@ void WrongSides::allow() {
 
 bool WrongSides::limit_slack() {
   // What turns over and back by rounding would be cut and turn at every instant that a number can tell.
-  constexpr int kMostCuts = 4;  // in a step
+  constexpr int kMostCuts = 4;    // in a step
+  constexpr double kSurely = 30;  // errors
   Thresholds& thresholds = event_functions_.thresholds();
   const EventFunctionErrors& errors = event_functions_.weigh_errors();
   bool any = false;
   for (std::size_t s = 0; s < event_functions_.size(); ++s) {
-    // One that was announced and did not turn over would be announced again at once.
-    if (!thresholds.let_since(s) || settling_.touches(s) || cuts_[s] >= kMostCuts) continue;
-    thresholds.limit_slack(s, errors[s]);
+    if (!thresholds.let_since(s) || cuts_[s] >= kMostCuts) continue;
+    if (!steps_damp_ && !(errors[s] < errors.undamped(s))) continue;
+    // One that was announced and did not turn over would be announced again at once, before it is far away.
+    const auto touch = settling_.touch(s);
+    thresholds.limit_slack(s, touch ? kSurely * std::max(errors[s], *touch) : errors[s]);
     if (event_functions_.against(s) <= thresholds.along_solution(s, thresholds.rounding(s))) continue;
     ++cuts_[s];
     any = true;
@@ -52,7 +55,7 @@ void WrongSides::tell(const RestingComparisons& resting, double t, std::span<con
     const auto since = event_functions_.thresholds().let_since(s);
     if (!since || told_[unit] || !(t - *since > kLong * span_)) continue;
     // What has not turned over yet, or was looked at and let touch, is a decay, which stays on its side.
-    if (settling_.last_turn(s) == 0 || settling_.touches(s) || resting.contains(unit)) continue;
+    if (settling_.last_turn(s) == 0 || settling_.touch(s) || resting.contains(unit)) continue;
     if (!changes_signals(program_, workspace_, unit, t, x) &&
         !changes_rates(program_, workspace_, unit, t, x))
       continue;

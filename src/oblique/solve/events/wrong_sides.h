@@ -28,8 +28,12 @@ class WrongSides {
   /// Of the event functions, evaluated last, that lie there because their slack lets them: takes what is more
   /// than their errors there. Whether any lies there by more than that.
   bool limit_slack();
-  /// Another step has been taken.
-  void take_step() { std::fill(cuts_.begin(), cuts_.end(), 0); }
+  /// Another step has been taken, by a method that damps what is fast, or one by which only the look at what
+  /// is near to zero does (DampedSolution).
+  void take_step(bool damps) {
+    steps_damp_ = damps;
+    std::fill(cuts_.begin(), cuts_.end(), 0);
+  }
   /// Tells of those, evaluated at (t, x), that have lain there for long, where the other position would make
   /// something else; those apart that rest at their levels.
   void tell(const RestingComparisons& resting, double t, std::span<const double> x);
@@ -44,6 +48,7 @@ class WrongSides {
   double span_;
   std::vector<bool> told_;  ///< of each unit
   std::vector<int> cuts_;   ///< of the slack of each switch, in this step
+  bool steps_damp_ = false;
 };
 
 }  // namespace oblique::solve

@@ -121,7 +121,7 @@ bool Integration::take_step(double& t) {
     return false;
   }
   const bool damps = settings_.method != diagram::IntegrationMethod::adams;
-  parts_.switching.take_step(damps ? solver_->statistics().last_step : 0);
+  parts_.switching.take_step(solver_->statistics().last_step, damps);
   const std::vector<double>& sample_times =
       parts_.sources.sample_times(from, t, *solver_, parts_.switching.slides());
   // The states are still those of `from`.

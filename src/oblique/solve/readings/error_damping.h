@@ -19,8 +19,8 @@ class ErrorDamping {
   /// The program must outlive this.
   explicit ErrorDamping(const network::Program& program) : program_(program) {}
 
-  /// The steps that lead to what is weighed next damp what is fast, and are as long as this [s]; 0: they do
-  /// not, or there have been none since the states jumped.
+  /// The steps that lead to what is weighed next are as long as this [s], and damp what is fast, or the look
+  /// at it does (DampedSolution); 0: there have been none since the states jumped.
   void take_steps(double length) { length_ = length; }
   bool any() const { return length_ > 0; }
   double step_length() const { return length_; }

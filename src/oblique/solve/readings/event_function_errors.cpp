@@ -35,6 +35,7 @@ double EventFunctionErrors::change(double rate, double still) const {
 void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const double> states,
                                 ErrorDamping* damping) {
   constexpr double kErrorOfClock = 1e-13;  // it is a straight line to any method
+  constexpr double kDamped = 0.1;          // of them: what is damped by less is that of slow states
   std::vector<bool> clocks(program_.n_states(), false);
   for (std::size_t c = 0; c < program_.clocks(); ++c) clocks[program_.source_states()[c]] = true;
   std::vector<double> off(program_.n_states(), 0.0), rates(errors_.size()), still(errors_.size());
@@ -58,7 +59,9 @@ void EventFunctionErrors::weigh(const network::Evaluation& here, std::span<const
       errors_[s] = std::max(errors_[s], change(rates[s], still[s]));
   }
   if (damping == nullptr) errors_ = undamped_;
-  for (std::size_t s = 0; s < errors_.size(); ++s) errors_[s] = std::min(errors_[s], undamped_[s]);
+  for (std::size_t s = 0; s < errors_.size(); ++s) {
+    if (!(errors_[s] < kDamped * undamped_[s])) errors_[s] = undamped_[s];
+  }
 }
 
 std::vector<std::size_t> EventFunctionErrors::states_behind(std::uint32_t s, const network::Evaluation& here,

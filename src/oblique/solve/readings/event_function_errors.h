@@ -22,7 +22,7 @@ class EventFunctionErrors {
   void know_states(std::span<const double> reach) { reach_.assign(reach.begin(), reach.end()); }
 
   /// The most for some combinations of the signs of the errors; `here` is what was evaluated at `states`.
-  /// With `damping`, what that leaves of them where it is less.
+  /// With `damping`, what that leaves of them where it is much less.
   void weigh(const network::Evaluation& here, std::span<const double> states, ErrorDamping* damping);
 
   /// Where they were weighed last.

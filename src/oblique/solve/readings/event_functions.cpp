@@ -79,11 +79,10 @@ bool EventFunctions::is_any_due(const Announced& announced) const {
 
 bool EventFunctions::is_any_fine() {
   constexpr double kNear = 1000;  // undamped errors
-  constexpr double kPart = 0.1;   // of them: what is damped
   const EventFunctionErrors& errors = weigh_errors();
   for (std::size_t s = 0; s < values_.size(); ++s) {
     const double undamped = errors.undamped(s);
-    if (!is_known(s) && errors[s] < kPart * undamped && std::abs(values_[s]) < kNear * undamped) return true;
+    if (!is_known(s) && errors[s] < undamped && std::abs(values_[s]) < kNear * undamped) return true;
   }
   return false;
 }

@@ -40,7 +40,8 @@ class EventFunctions {
   void know_states(std::span<const double> reach) { errors_.know_states(reach); }
   /// See ErrorDamping; `sliding` are the units that slide along the steps.
   void take_steps(double length, const std::vector<std::uint32_t>& sliding);
-  bool steps_damp() const { return damping_.any(); }
+  /// Whether any step was taken since the states jumped.
+  bool any_step() const { return damping_.any(); }
   /// The solution within a step, at whose end all was evaluated: with its errors damped where some event
   /// function is so near to zero there that only its damped error tells its side.
   const Interpolant& within_step(const Interpolant& solution);
