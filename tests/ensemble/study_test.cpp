@@ -452,6 +452,35 @@ TEST(Study, NamesAllFindingsAtTheirPlaces) {
       << message;
 }
 
+// A setting lies between 0 and 1: nothing is drawn beyond, and nothing mirrored, also not where it is varied
+// to.
+TEST(Study, RefusesScatterBeyondTheRangeOfAParameter) {
+  const char* const kDivider = R"toml(format = "oblique-diagram/1"
+title  = "divider"
+[run]
+until = 1
+[blocks]
+one = { type = "constant" }
+p   = { type = "potentiometer", in = "one", setting = 0.5 }
+[outputs]
+p = "p"
+)toml";
+  Plan plan = plan_of({}, {"end(p)"});
+  plan.runs = 3;
+  plan.scatter.push_back({"potentiometer", "setting", 0.6, {}});
+  const auto message = [&] { return testing::message_of<StudyError>([&] { study_of(plan, kDivider); }); };
+  EXPECT_EQ(message(),
+            "'p.setting' is 0.5, and scatters by ±0.6; expected a half width that keeps it a number at least "
+            "0 and at most 1");
+  plan.scatter[0].half_width = 0.25;
+  plan.vary = {{"p.setting", "0.3,0.8", {}}};
+  EXPECT_EQ(message(),
+            "'p.setting' is 0.8, and scatters by ±0.25; expected a half width that keeps it a number at "
+            "least 0 and at most 1");
+  plan.vary = {{"p.setting", "0.3,0.75", {}}};
+  EXPECT_EQ(study_of(plan, kDivider).runs(), 6U);
+}
+
 TEST(Study, RefusesNumbersOfRunsThatMakeNoSense) {
   const auto message = [](Plan plan) {
     return testing::message_of<StudyError>([&] { study_of(plan, kStudiedDecay); });

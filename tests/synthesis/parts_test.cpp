@@ -192,6 +192,16 @@ TEST(WithComment, KeepsTheTextBehindALineOfItsOwn) {
 
 // ---- the target
 
+TEST(TargetPath, TakesTheUnitsOfItsHeadings) {
+  mechanism::Mechanism mechanism = mechanism::parse_mechanism(test::FourBar{}.text(), "m.toml");
+  mechanism.length_unit = "cm";
+  const TargetPath path = read_target_path("crank [deg],F.x [mm],F.y/m\n90,30,0.04\n", "p.csv", mechanism);
+  EXPECT_THAT(path.times, ::testing::ElementsAre(::testing::DoubleNear(std::numbers::pi / 200, 1e-16)));
+  EXPECT_LT((path.positions.front() - Vector2d(3, 4)).norm(), 1e-14);
+  EXPECT_THAT(read_target_path("t [ms],F.x,F.y\n10,1,2\n", "p.csv", mechanism).times,
+              ::testing::ElementsAre(0.01));
+}
+
 TEST(TargetPath, TurnsAnglesIntoTimesInTheirOrder) {
   const mechanism::Mechanism mechanism = mechanism::parse_mechanism(test::FourBar{}.text(), "m.toml");
   const TargetPath path = read_target_path("F.y,crank,F.x\n1,3,2\n4,1,5\n", "p.csv", mechanism);

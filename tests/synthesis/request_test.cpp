@@ -169,7 +169,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "crank,F.x,F.y\n0,1,2\n180,3,4\n",
                 "path.csv: column 'crank' spans 28.6479 turns of drive 'crank'; expected one turn at most, "
                 "in [rad]\n  "
-                "remedy: turn degrees into radians: multiply with pi/180"},
+                "remedy: head the column 'crank [deg]' if it is in degrees"},
+        Refused{"UnitOfAnotherKind",
+                {"AB"},
+                "t [mm],F.x,F.y\n1,2,3\n",
+                "path.csv: column 't' is in [mm]; expected a unit that can be turned into [s]"},
         Refused{"NotFinite",
                 {"AB"},
                 "F.x,F.y\n1,2\nnan,4\n",

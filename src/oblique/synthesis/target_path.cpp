@@ -5,12 +5,14 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <oblique/mechanism/motion/motion.h>
 #include <oblique/synthesis/synthesis_error.h>
 #include <oblique/text/csv.h>
+#include <oblique/text/quantity.h>
 
 namespace oblique::synthesis {
 namespace {
@@ -20,13 +22,13 @@ constexpr double kOneTurn = 1 + 1e-4;
 
 class TargetPathReader {
  public:
-  TargetPathReader(const text::CsvTable& table, const std::string& file,
-                   const mechanism::Mechanism& mechanism)
-      : table_(table), mechanism_(mechanism) {
+  TargetPathReader(text::CsvTable table, const std::string& file, const mechanism::Mechanism& mechanism)
+      : table_(std::move(table)), mechanism_(mechanism) {
     path_.file = file;
   }
 
   TargetPath read() {
+    convert();
     check_columns();
     read_point();
     read_times();
@@ -41,6 +43,31 @@ class TargetPathReader {
   bool is_timing(const std::string& name) const {
     return name == "t" || std::any_of(mechanism_.drives.begin(), mechanism_.drives.end(),
                                       [&](const mechanism::Drive& drive) { return drive.name == name; });
+  }
+
+  std::string unit_of(const std::string& column) const {
+    if (is_coordinate(column)) return mechanism_.length_unit;
+    if (column == "t") return "s";
+    const auto drive = std::find_if(mechanism_.drives.begin(), mechanism_.drives.end(),
+                                    [&](const mechanism::Drive& one) { return one.name == column; });
+    return drive->slide ? mechanism_.length_unit : "rad";
+  }
+
+  /// Takes the units from the headings: coordinates to the mechanism's unit of length, times to seconds,
+  /// drives' angles to radians.
+  void convert() {
+    for (std::size_t c = 0; c < table_.names.size(); ++c) {
+      const text::CsvHeading heading = text::split_heading(table_.names[c]);
+      if (heading.unit.empty() || !(is_coordinate(heading.name) || is_timing(heading.name))) continue;
+      table_.names[c] = heading.name;
+      const std::string wanted = unit_of(heading.name);
+      const auto unit = text::parse_unit(heading.unit);
+      const auto factor = unit ? text::factor_between(*unit, text::parse_unit(wanted).value()) : std::nullopt;
+      if (!factor)
+        fail(fmt::format("column '{}' is in [{}]", heading.name, heading.unit),
+             fmt::format("a unit that can be turned into [{}]", wanted), {});
+      for (double& value : table_.columns[c]) value *= *factor;
+    }
   }
 
   void check_columns() const {
@@ -116,7 +143,8 @@ class TargetPathReader {
     fail(fmt::format("column '{}' spans {:.6g} turns of drive '{}'", path_.timing, turns,
                      mechanism_.drives.front().name),
          fmt::format("one turn at most, in {}", path_.timing == "t" ? "[s]" : "[rad]"),
-         path_.timing == "t" ? "" : "turn degrees into radians: multiply with pi/180");
+         path_.timing == "t" ? ""
+                             : fmt::format("head the column '{} [deg]' if it is in degrees", path_.timing));
   }
 
   void sort() {
@@ -162,7 +190,7 @@ class TargetPathReader {
         text::Diagnostic{{path_.file, {}}, std::move(what), std::move(expected), std::move(remedy)});
   }
 
-  const text::CsvTable& table_;
+  text::CsvTable table_;
   const mechanism::Mechanism& mechanism_;
   TargetPath path_;
 };
@@ -171,8 +199,7 @@ class TargetPathReader {
 
 TargetPath read_target_path(std::string_view csv, const std::string& file,
                             const mechanism::Mechanism& mechanism) {
-  const text::CsvTable table = text::parse_csv(csv, file);
-  return TargetPathReader(table, file, mechanism).read();
+  return TargetPathReader(text::parse_csv(csv, file), file, mechanism).read();
 }
 
 }  // namespace oblique::synthesis

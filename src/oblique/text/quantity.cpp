@@ -63,6 +63,7 @@ const std::vector<Unit>& named_units() {
       base_unit("μs", 1e-6, {{U::time, 1}}),
       base_unit("min", 60, {{U::time, 1}}),
       base_unit("h", 3600, {{U::time, 1}}),
+      base_unit("d", 86400, {{U::time, 1}}),
       frequency("Hz", 1),
       frequency("mHz", 1e-3),
       frequency("kHz", 1e3),

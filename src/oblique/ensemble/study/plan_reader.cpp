@@ -162,7 +162,41 @@ class PlanReader {
       report(place, fmt::format("'{}.{}' scatters twice", scatter.block, scatter.parameter), "each once");
       return;
     }
-    result_.scatters.push_back(std::move(scatter));
+    if (stays_allowed(scatter, flat, place)) result_.scatters.push_back(std::move(scatter));
+  }
+
+  /// Whether nothing that a scatter names may draw what it may not be, wherever it is varied to.
+  bool stays_allowed(const diagram::BlockFigure& scatter, const diagram::FlatDiagram& flat,
+                     const text::Place& place) {
+    if (!keeps_range(scatter, flat, place)) return false;
+    for (std::size_t k = 0; k < result_.names.size(); ++k) {
+      for (const double bound : {result_.lowest[k], result_.highest[k]}) {
+        std::vector<double> values = result_.usual;
+        values[k] = bound;
+        try {
+          if (!keeps_range(scatter, result_.subject->machine(values).flat, place)) return false;
+        } catch (const text::Error&) {
+          // a machine that there is not: its row says so
+        }
+      }
+    }
+    return true;
+  }
+
+  bool keeps_range(const diagram::BlockFigure& scatter, const diagram::FlatDiagram& flat,
+                   const text::Place& place) {
+    const std::vector<DrawnElement> elements = drawn_elements(flat, {scatter});
+    return std::all_of(elements.begin(), elements.end(), [&](const DrawnElement& element) {
+      const diagram::FlatBlock& block = flat.blocks[element.block];
+      const diagram::ParameterDefinition& parameter = block.definition->parameters[element.parameter];
+      const double value = block.parameters[element.parameter];
+      if (parameter.allows(value - scatter.value) && parameter.allows(value + scatter.value)) return true;
+      report(
+          place,
+          fmt::format("'{}.{}' is {}, and scatters by ±{}", block.path, parameter.name, value, scatter.value),
+          fmt::format("a half width that keeps it {}", parameter.range()));
+      return false;
+    });
   }
 
   /// Those that were not given by themselves.
