@@ -280,6 +280,35 @@ TEST(Rest, RefusesALoopThatItsLagsDoNotHoldEither) {
                         "states on their loop move; still moving: 'a'"));
 }
 
+// What lies at its bend where the run starts, and leaves it upwards, is on the side to which it goes: the
+// rest of a loop beside it has no other opinion. Truth: |t/2|, and √½ but for a gain of 1e6.
+TEST(Rest, LeavesWhatStartsAtItsBendWhereItGoes) {
+  for (const char* const bent :
+       {"a = { type = \"absolute-value\", in = \"x\" }", "a = { type = \"diode\", in = \"x\" }",
+        "a = { type = \"function-generator\", in = \"x\", points = [[-1, 1], [0, 0], [1, 1]] }"}) {
+    const Compiled made(fmt::format(R"toml(
+u = {{ type = "constant", value = 0.5 }}
+x = {{ type = "integrator", in = "u" }}
+{}
+r = {{ type = "square-root", in = "u" }}
+)toml",
+                                    bent));
+    const solve::Run run = testing::run_of(made, {.until = 1});
+    EXPECT_NEAR(testing::row_values(run, "a").back(), 0.5, 1e-9) << bent;
+    EXPECT_NEAR(testing::row_values(run, "r").back(), std::sqrt(0.5), 2e-6) << bent;
+  }
+}
+
+// A state that is held while a loop settles may be as large as it likes.
+TEST(Rest, IsFoundBesideWhatIsFarAway) {
+  const Rested rested(R"toml(
+x = { type = "integrator", in = "-x", initial = 1e9 }
+u = { type = "constant", value = 0.5 }
+r = { type = "square-root", in = "u" }
+)toml");
+  EXPECT_NEAR(rested.state("r.root"), std::sqrt(0.5), 2e-6);
+}
+
 // From where the amplifiers start, the way to where their sums are zero leads across what bends: |y| = 0.5
 // from −0.4 over 0, a limiter from below to above, a table over three of its corners. On the side where they
 // start they would run away. The static error is out/(μ ∂r/∂out), μ = 10⁶.

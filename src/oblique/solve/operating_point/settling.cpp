@@ -60,6 +60,15 @@ class Settling {
     return true;
   }
 
+  /// The largest magnitude of those that settle.
+  double farthest(const VectorXd& x) const {
+    double farthest = 0;
+    for (std::size_t i = 0; i < group_of_.size(); ++i) {
+      if (group_of_[i] != kHeld) farthest = std::max(farthest, std::abs(x[static_cast<Index>(i)]));
+    }
+    return farthest;
+  }
+
   /// The states x, of those that settle those as zero that are smaller than `rounding`.
   VectorXd without_rounding(VectorXd x, double rounding) const {
     for (std::size_t i = 0; i < group_of_.size(); ++i) {
@@ -193,7 +202,7 @@ bool settle(const network::Program& program, network::Workspace& workspace, doub
     derivatives = next_derivatives;
     VectorXd::Map(states.data(), n) = x;
     shortest = kShortest * std::min(unit, step_of_change());
-    if (x.cwiseAbs().maxCoeff() > kFarAway || !system.linearise(x)) return false;
+    if (system.farthest(x) > kFarAway || !system.linearise(x)) return false;
     last = change;
     if (change < kSmallChange) {
       h *= 10;

@@ -9,6 +9,7 @@ namespace oblique::solve {
 SwitchPlacing::SwitchPlacing(const network::Program& program, std::vector<std::uint32_t> switches)
     : program_(program),
       switches_(std::move(switches)),
+      roundings_(program),
       event_functions_(program.switches().size()),
       signals_(program.n_signals()) {
   for (const std::uint32_t s : switches_) {
@@ -25,10 +26,15 @@ bool SwitchPlacing::place(double t, const double* x, network::Workspace& workspa
   const std::size_t most = 2 * discrete_states_.size() + 100;  // a table moves from line to line
   for (std::size_t round = 0; round <= most; ++round) {
     if (switches_.empty()) return true;
-    if (!program_.event_functions(t, x, event_functions_.data(), workspace)) return false;
+    const auto before = program_.event_functions(t, x, event_functions_.data(), workspace);
+    if (!before) return false;
+    std::vector<double> sizes;
+    for (const std::uint32_t s : switches_) sizes.push_back(before->compared_size(s));
     bool turned = false;
-    for (const std::uint32_t s : switches_) {
-      if (thresholds != nullptr && std::abs(event_functions_[s]) <= (*thresholds)[s]) continue;
+    for (std::size_t k = 0; k < switches_.size(); ++k) {
+      const std::uint32_t s = switches_[k];
+      const double stays = thresholds != nullptr ? (*thresholds)[s] : roundings_.rounding_of(s, sizes[k]);
+      if (std::abs(event_functions_[s]) <= stays) continue;
       const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
       const double position = event_functions_[s] > 0 ? 1 : 0;
       turned = turned || workspace.discrete_state(discrete_state) != position;

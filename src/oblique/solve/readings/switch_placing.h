@@ -24,8 +24,8 @@ class SwitchPlacing {
   bool has_tables() const { return !tables_.empty(); }
 
   /// Puts them where the signals at (t, x) ask for them, again and again until all stand so; one whose event
-  /// function is within its threshold, where such are given, stays. False where they lead each other in a
-  /// circle, or an algebraic loop has no solution on the way.
+  /// function is within its threshold, of rounding where none are given, stays. False where they lead each
+  /// other in a circle, or an algebraic loop has no solution on the way.
   bool place(double t, const double* x, network::Workspace& workspace,
              const Thresholds* thresholds = nullptr);
 
@@ -34,6 +34,7 @@ class SwitchPlacing {
   std::vector<std::uint32_t> switches_;
   std::vector<std::size_t> tables_;  ///< the events that move them along
   std::vector<std::uint32_t> discrete_states_;
+  Thresholds roundings_;
   std::vector<double> event_functions_, signals_;
 };
 
