@@ -292,6 +292,11 @@ TEST(ParseBlock, ChecksCasesAndStarts) {
               HasSubstr("[[cases]] has no 'when'; expected a condition on the parameters"));
   EXPECT_EQ(block_message(ports + "[[cases]]\nwhen = \"x > 0\"\nequations = { y = 1 }\n"),
             "b.toml:12:9: 'when': there is no name 'x'\n  remedy: known: gain, polarity");
+  EXPECT_THAT(
+      block_message(ports + "[memories]\nm = 0\n[[events]]\nwhen = \"x > 0\"\nset = { m = 1 }\n"
+                            "at_start = false\nbefore_start = true\n"),
+      HasSubstr("[[events]] comes before the start, and does not come there; expected 'at_start = false' "
+                "or 'before_start = true', not both"));
   EXPECT_THAT(block_message("cases = 3\n" + ports),
               HasSubstr("'cases' is a number; expected [[cases]], an array of tables"));
   EXPECT_THAT(block_message(ports + "[start]\ny = 0\n"),

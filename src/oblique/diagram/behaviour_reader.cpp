@@ -253,6 +253,10 @@ class BehaviourReader {
       if (rule.where) expressions_.resolve(*rule.where, *where, "'where'", constants_);
     }
     rule.at_start = reader.boolean("at_start").value_or(true);
+    rule.before_start = reader.boolean("before_start").value_or(false);
+    if (rule.before_start && !rule.at_start)
+      reader.report("before_start", "[[events]] comes before the start, and does not come there",
+                    "'at_start = false' or 'before_start = true', not both");
     const text::Value* const set = reader.table("set");
     if (set == nullptr && reader.table().find("set") == nullptr) {
       reader.report("set", "[[events]] has no 'set'", "what the event changes, { memory = \"value\" }");

@@ -100,7 +100,8 @@ struct EventRule {
   text::Expression when;
   std::vector<EventAction> actions;
   std::vector<EventAction> piling_up;  ///< in their place where the event comes ever faster; none: not told
-  bool at_start = true;  ///< a condition that holds when the run starts counts as having become true
+  bool at_start = true;       ///< a condition that holds when the run starts counts as having become true
+  bool before_start = false;  ///< … and as having done so before: nothing that follows from it rises
   std::optional<text::Expression> where;  ///< of parameters: there is no such event where it is 0
   text::Place place;
 };

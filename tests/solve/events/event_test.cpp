@@ -251,6 +251,28 @@ set = { next = "next + 0.1", high = "1 - high" }
 // --- simultaneous and secondary events
 // ------------------------------------------------------------------------------
 
+// What a memory with two levels goes to at the start it was at before: no edge for a counter, a monostable or
+// what they are behind. A pulse that begins at the start is one.
+TEST(Events, BeforeTheStartAreNoEdgesThere) {
+  const Compiled made(R"toml(one = { type = "constant" }
+high = { type = "comparator", in = "one", hysteresis = 0.1 }
+set = { type = "flip-flop", set = "one" }
+pulled = { type = "relay", coil = "high", make = "set.out" }
+pulse = { type = "pulse-train", period = 10 }
+of_high = { type = "counter", clock = "high" }
+of_set = { type = "counter", clock = "set.out" }
+of_pulled = { type = "counter", clock = "pulled" }
+of_pulse = { type = "counter", clock = "pulse" }
+shot = { type = "monostable", trigger = "pulled", length = 0.5 }
+)toml");
+  const auto run = run_of(made, {.until = 1, .samples = 2});
+  EXPECT_EQ(row_values(run, "pulled"), std::vector<double>(2, 1));
+  for (const char* const none : {"of_high.out", "of_set.out", "of_pulled.out"})
+    EXPECT_EQ(row_values(run, none), std::vector<double>(2, 0)) << none;
+  EXPECT_EQ(row_values(run, "shot").front(), 0);
+  EXPECT_EQ(row_values(run, "of_pulse.out"), std::vector<double>(2, 1));
+}
+
 TEST(Events, SecondaryEventsFollowAtTheSameInstant) {
   // A ripple counter of three stages: the eighth pulse sets all back at once.
   const diagram::BlockLibrary library = shipped_blocks_and("stage", R"([inputs]

@@ -70,12 +70,13 @@ void make_events(Assembly& a) {
     Event event;
     event.block = a.diagram.blocks[block].path;
     event.at_start = rule->at_start;
+    event.before_start = rule->before_start;
     event.condition = a.built(block, rule->when, rule->place, "an event's 'when'");
     event.actions = actions_of(a, block, rule->actions);
     if (!rule->piling_up.empty()) {
       event.piling_up = a.network.events.size();
-      a.network.events.push_back(
-          {event.block, a.network.graph.constant(0), false, false, actions_of(a, block, rule->piling_up)});
+      a.network.events.push_back({event.block, a.network.graph.constant(0), false, false, false,
+                                  actions_of(a, block, rule->piling_up)});
     }
     a.network.events.push_back(std::move(event));
   }

@@ -67,7 +67,8 @@ struct Event {
   std::string block;  ///< path
   NodeId condition = 0;
   bool at_start = true;
-  bool repeats = false;  ///< comes again for as long as the condition holds
+  bool before_start = false;  ///< what follows from it at the start was so before
+  bool repeats = false;       ///< comes again for as long as the condition holds
   std::vector<Action> actions;
   std::optional<std::size_t> piling_up =
       std::nullopt;  ///< the event that takes its place where it comes ever faster

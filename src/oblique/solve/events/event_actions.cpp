@@ -147,6 +147,11 @@ std::vector<EventActions::Come> EventActions::look(double t, std::span<const dou
         held_[e] && (!held_before[e] || event.repeats || at_once) && (!starting || event.at_start);
     if (comes) found.push_back({e, at_once});
   }
+  // At a start what was so before it comes first; what follows from that does not rise.
+  const auto of_before = [&](const Come& come) { return program_.events()[come.event].before_start; };
+  if (!starting || std::none_of(found.begin(), found.end(), of_before)) return found;
+  for (const Come& come : found) held_[come.event] = of_before(come);
+  std::erase_if(found, [&](const Come& come) { return !of_before(come); });
   return found;
 }
 
@@ -198,6 +203,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
   Effect effect;
   effect.events = events;
   effect.tables = program_.events()[served.front().event].repeats;
+  effect.before_start = starting && program_.events()[served.front().event].before_start;
   for (const Change& change : changes) {
     if (change.action->on_state) {
       effect.sets_states = true;

@@ -43,6 +43,7 @@ class EventActions {
     bool sets_states = false;
     bool jumps = false;               ///< a state has another value now
     bool tables = false;              ///< nothing has come but that tables were moved along
+    bool before_start = false;        ///< nothing but what was so before the run
     std::vector<std::size_t> events;  ///< that have been served
   };
   /// Serves all events whose conditions have become true at (t, x), where all event functions were evaluated;

@@ -79,7 +79,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     settling_.begin();
     if (active() && settling_.settle(t, x)) return true;
     const auto effect = active() ? serve_events(t, x, starting) : std::nullopt;
-    starting = starting && (!effect || effect->tables);
+    starting = starting && (!effect || effect->tables || effect->before_start);
     takes = takes && (!effect || !effect->sets_states);
     if (effect) return true;
     return std::exchange(loops_go, false) && loop_jumps_.settle(t, x);

@@ -94,6 +94,7 @@ bool Integration::turns_too_far(double from, double t) {
 }
 
 bool Integration::take_step(double& t) {
+  constexpr int kMostEnds = 100;  // of branches, one at the other
   const double from = t;
   limit_step(t);
   try {
@@ -104,6 +105,7 @@ bool Integration::take_step(double& t) {
     const std::vector<double> last = parts_.states;
     switch (parts_.branches.look_ahead(t, parts_.segments.end(), parts_.states, *solver_)) {
       case BranchWatch::Ahead::end:
+        if (++ends_ > kMostEnds) throw;
         parts_.segments.end_branch(from, last, t);
         if (parts_.overloads) parts_.overloads->restart(t, parts_.states);
         restart(t);
@@ -116,6 +118,7 @@ bool Integration::take_step(double& t) {
         throw;
     }
   }
+  ends_ = 0;
   if (turns_too_far(from, t)) {
     t = from;
     return false;

@@ -99,6 +99,7 @@ class Integration {
   double places_limit_ = kNone;                    ///< [s] of a step, for the places to look at in it
   std::size_t places_ = 0;                         ///< in the last step
   double length_ = 0;                              ///< [s] of the last step
+  int ends_ = 0;                                   ///< of branches, since the last step
   bool any_event_ = false;                         ///< within it
   bool limits_ = false;                            ///< the solver's steps are limited
   double begin_;                                   ///< [s]
