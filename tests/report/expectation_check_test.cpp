@@ -81,6 +81,33 @@ until = 100
   EXPECT_EQ(to_text({results.back()}), "FAILED  decay period = not known, expected 1 ± 9\n");
 }
 
+// A tone of 3 kHz in a run of 20 s, whose rows are 0.6 ms apart, looked like one of 277 Hz, and pulses of 0.1
+// ms came once in five; a clock of 50 Hz has more events than are on record, and one of 0.5 Hz has them at
+// rows. Truth: by definition.
+TEST(Expectations, FindNoPeriodBetweenRows) {
+  const Compiled made(R"toml(
+tone   = { type = "sine-source", frequency = 3000 }
+short  = { type = "pulse-train", period = 0.7, width = 1e-4 }
+clock  = { type = "pulse-train", period = 0.02, width = 0.006 }
+second = { type = "pulse-train", period = 2, width = 1 }
+)toml",
+                      R"toml([run]
+until = 20
+[expect]
+"tone period"   = { value = 1, within = 9 }
+"short period"  = { value = 1, within = 9 }
+"clock period"  = { value = 0.02, within = 1e-12 }
+"second period" = { value = 2, within = 1e-12 }
+)toml");
+  const auto results = check(made);
+  ASSERT_EQ(results.size(), 4U);
+  for (const auto& result : results) {
+    const bool is_known = result.expectation.output == "clock" || result.expectation.output == "second";
+    EXPECT_EQ(result.met, is_known) << to_text({result});
+    EXPECT_EQ(std::isnan(result.actual), !is_known) << to_text({result});
+  }
+}
+
 TEST(Expectations, AskForEachTimeOnceInOrder) {
   const Compiled made(kCircle, R"toml([run]
 until = 4

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -20,11 +22,21 @@ double value_at(const solve::Trajectory& extra, double time, std::size_t column)
   return std::nan("");  // the run was made without expectation_times
 }
 
-/// Rows of a run that a period is found by.
+/// Rows of a run that a period is found by. They lie unevenly, by up to this part of their distance, so that
+/// a fast signal does not pass for a slow one.
 constexpr int kRowsOfPeriods = 32768;
+constexpr double kUneven = 0.3;
 
-/// When a signal jumps between the rows `k` − 1 and `k`: the time of the first event there; nothing where it
-/// does not jump, or no event is on record.
+double time_of_row(int k, double until) {
+  const double multiple = k * std::numbers::phi;
+  const bool is_end = k == 0 || k == kRowsOfPeriods;
+  const double off = is_end ? 0 : kUneven * (2 * (multiple - std::floor(multiple)) - 1);
+  return until * (k + off) / kRowsOfPeriods;
+}
+
+/// When a signal jumps between the rows `k` − 1 and `k`: the time of the first event there, that of the row
+/// before included, which shows the signal as it was then; nothing where it does not jump, or no event is on
+/// record.
 std::optional<double> jump(const solve::Run& run, std::size_t k, std::size_t column) {
   constexpr double kSteep = 10;  // times what it changes by in the rows beside
   const solve::Trajectory& rows = run.extra;
@@ -32,11 +44,9 @@ std::optional<double> jump(const solve::Run& run, std::size_t k, std::size_t col
     return row > 0 && row < rows.rows() ? std::abs(rows.at(row, column) - rows.at(row - 1, column)) : 0;
   };
   if (!(change(k) > kSteep * (change(k - 1) + change(k + 1)))) return std::nullopt;
-  const auto event =
-      std::find_if(run.events.begin(), run.events.end(),
-                   [&](const solve::EventRecord& record) { return record.time > rows.at(k - 1, 0); });
-  if (event == run.events.end() || event->time > rows.at(k, 0)) return std::nullopt;
-  return event->time;
+  const auto event = std::lower_bound(run.event_times.begin(), run.event_times.end(), rows.at(k - 1, 0));
+  if (event == run.event_times.end() || *event > rows.at(k, 0)) return std::nullopt;
+  return *event;
 }
 
 /// When a signal passes a level between the rows `k` − 1 and `k`: the time of the event by which it jumps; or
@@ -69,7 +79,7 @@ double passage(const solve::Run& run, std::size_t k, std::size_t column, double 
 }
 
 /// The mean time from rise to rise through the middle between the extremes, from a row on; not a number where
-/// it does not rise twice.
+/// it does not rise twice, or is above or below the middle for so few rows that others may lie between two.
 double period_from(const solve::Run& run, std::size_t first, std::size_t column) {
   const solve::Trajectory& rows = run.extra;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -78,10 +88,16 @@ double period_from(const solve::Run& run, std::size_t first, std::size_t column)
     high = std::max(high, rows.at(k, column));
   }
   const double level = (low + high) / 2;
+  constexpr std::size_t kLeastRows = 8, kLeastOfJumps = 3;
   std::vector<double> rises;
+  std::optional<std::size_t> since;
   for (std::size_t k = first + 1; k < rows.rows(); ++k) {
-    if (rows.at(k - 1, column) < level && rows.at(k, column) >= level)
-      rises.push_back(passage(run, k, column, level));
+    const bool is_above = rows.at(k, column) >= level;
+    if ((rows.at(k - 1, column) >= level) == is_above) continue;
+    const bool jumps = since && k - *since < kLeastRows && jump(run, k, column) && jump(run, *since, column);
+    if (since && k - *since < (jumps ? kLeastOfJumps : kLeastRows)) return std::nan("");
+    since = k;
+    if (is_above) rises.push_back(passage(run, k, column, level));
   }
   if (rises.size() < 2) return std::nan("");
   return (rises.back() - rises.front()) / static_cast<double>(rises.size() - 1);
@@ -151,7 +167,7 @@ std::vector<double> expectation_times(std::span<const diagram::Expectation> expe
   text::Diagnostics diagnostics;
   for (const diagram::Expectation& e : expectations) {
     if (e.kind == diagram::Expectation::Kind::period && !has_period) {
-      for (int k = 0; k <= kRowsOfPeriods; ++k) times.push_back(until * k / kRowsOfPeriods);
+      for (int k = 0; k <= kRowsOfPeriods; ++k) times.push_back(time_of_row(k, until));
       has_period = true;
     }
     if (e.kind != diagram::Expectation::Kind::at_time) continue;

@@ -127,6 +127,7 @@ void Runner::step_to_end() {
 /// Gathers what the run has given.
 void Runner::finish() {
   sampler_.result.events = events();
+  sampler_.result.event_times = switching_.log().times();
   sampler_.result.event_count = switching_.log().count() + static_cast<long>(branches_.jumps().size());
   sampler_.result.state = RunSnapshot(end_, parts()).named(program_);
   sampler_.result.warnings = warnings();

@@ -12,7 +12,7 @@
 namespace oblique::solve {
 namespace {
 
-constexpr std::size_t kMostRecords = 1000;
+constexpr std::size_t kMostRecords = 1000, kMostTimes = 1'000'000;
 
 bool contains(const std::vector<std::uint32_t>& units, std::uint32_t unit) {
   return std::find(units.begin(), units.end(), unit) != units.end();
@@ -36,6 +36,7 @@ const network::Switch& EventLog::first_of(std::uint32_t unit) const {
 void EventLog::record(double t, std::string what) {
   ++count_;
   if (records_.size() < kMostRecords) records_.push_back({t, std::move(what)});
+  if (times_.size() < kMostTimes) times_.push_back(t);
 }
 
 void EventLog::record_turn(std::size_t s, double position, double t) {

@@ -58,6 +58,8 @@ class EventLog {
   /// The first thousand events, and how many there were.
   const std::vector<EventRecord>& records() const { return records_; }
   long count() const { return count_; }
+  /// When they came, of the first million.
+  const std::vector<double>& times() const { return times_; }
   /// What could not be seen.
   const std::vector<text::Diagnostic>& warnings() const { return warnings_; }
 
@@ -70,6 +72,7 @@ class EventLog {
 
   const network::Program& program_;
   const std::string& file_;
+  std::vector<double> times_;
   std::vector<EventRecord> records_;
   long count_ = 0;
   std::vector<text::Diagnostic> warnings_;
