@@ -212,5 +212,14 @@ RC_GTEST_PROP(Quantity, SurvivesTheWayThroughAnotherUnit, ()) {
   RC_ASSERT(std::abs(back - number) <= 1e-15 * number);
 }
 
+TEST(Quantity, TakesTheUnitOfTheOtherBoundWhereItHasNone) {
+  EXPECT_EQ(parse_quantity(with_unit_of("1", "2 mm"), *parse_unit("m")), 1e-3);
+  EXPECT_EQ(parse_quantity(with_unit_of("3/2", "2mm"), *parse_unit("mm")), 1.5);
+  EXPECT_EQ(parse_quantity(with_unit_of("1 cm", "20 mm"), *parse_unit("mm")), 10);
+  EXPECT_EQ(parse_quantity(with_unit_of("1", "2"), *parse_unit("m")), 1);
+  EXPECT_EQ(with_unit_of("", "2 mm"), "") << "is refused as it stands";
+  EXPECT_EQ(parse_quantity("2 d", *parse_unit("h")), 48);
+}
+
 }  // namespace
 }  // namespace oblique::text

@@ -107,8 +107,9 @@ class DimensionReader {
       report(fmt::format("'{}' does not have two bounds", wanted), number.name + "=lower..upper", {});
       return std::nullopt;
     }
-    const auto lower = read_bound(wanted, wanted.substr(begin, dots - begin), number);
-    const auto upper = read_bound(wanted, wanted.substr(dots + 2), number);
+    const std::string to = wanted.substr(dots + 2);
+    const auto lower = read_bound(wanted, text::with_unit_of(wanted.substr(begin, dots - begin), to), number);
+    const auto upper = read_bound(wanted, to, number);
     if (!lower || !upper) return std::nullopt;
     if (*lower > *upper) {
       report(fmt::format("the bounds of '{}' are the wrong way round", wanted), "lower..upper",

@@ -178,6 +178,21 @@ std::optional<double> factor_between(const Unit& unit, const Unit& wanted) {
   return factor / std::pow(*wanted.volts, power);
 }
 
+std::string with_unit_of(std::string_view quantity, std::string_view other) {
+  const auto unit_of = [](std::string_view text) {
+    std::size_t rest = 0;
+    parse_expression_prefix(text, rest);
+    return trim(text.substr(rest));
+  };
+  try {
+    const std::string_view unit = unit_of(other);
+    if (!unit.empty() && unit_of(quantity).empty()) return fmt::format("{} {}", quantity, unit);
+  } catch (const ExpressionError&) {
+    // no quantity: whoever reads it says so
+  }
+  return std::string(quantity);
+}
+
 double parse_quantity(std::string_view text, const Unit& wanted, const NameLookup& lookup) {
   std::size_t rest = 0;
   const double number = evaluate(parse_expression_prefix(text, rest), lookup);

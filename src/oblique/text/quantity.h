@@ -41,6 +41,9 @@ std::optional<double> factor_between(const Unit& unit, const Unit& wanted);
 /// without a unit the number is in `wanted` already. Throws ExpressionError.
 double parse_quantity(std::string_view text, const Unit& wanted, const NameLookup& lookup = {});
 
+/// A quantity without a unit in that of another one, as the first bound of "1..2 mm" is; else as it stands.
+std::string with_unit_of(std::string_view quantity, std::string_view other);
+
 /// What a number before the unit in `text`, from `rest` on, is multiplied by to be in `wanted`; 1 where there
 /// is none. Throws ExpressionError.
 double unit_factor(std::string_view text, std::size_t rest, const Unit& wanted,

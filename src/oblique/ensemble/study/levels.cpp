@@ -74,8 +74,9 @@ Range range_of(std::string_view text, const text::Unit& unit) {
   if (dots == std::string_view::npos)
     fail(fmt::format("'{}' has a ':' and no range before it", text), "from..to:values");
   Range range;
-  range.from = value_of(text::trimmed(parts[0].substr(0, dots)), unit);
-  range.to = value_of(text::trimmed(parts[0].substr(dots + 2)), unit);
+  const std::string_view to = text::trimmed(parts[0].substr(dots + 2));
+  range.from = value_of(text::with_unit_of(text::trimmed(parts[0].substr(0, dots)), to), unit);
+  range.to = value_of(to, unit);
   for (std::size_t k = 1; k < parts.size(); ++k) {
     const auto count = count_of(parts[k]);
     if (parts[k] == "log" && !range.logarithmic) {

@@ -77,7 +77,10 @@ bool FaintTurns::is_known(std::uint32_t s) const {
 }
 
 bool FaintTurns::comes_from_afar(double event_function, double error, double excursion, double since) const {
-  return std::abs(event_function) <= error && excursion >= kAfar * error && since >= kShortestTurn * span_;
+  constexpr double kMisses = 100;  // errors, which may come together in a long run
+  const double size = std::abs(event_function);
+  return size <= kMisses * error && excursion >= kAfar * std::max(error, size) &&
+         since >= kShortestTurn * span_;
 }
 
 /// At t, by the error of the event function, how far it has been from zero since it turned over last, and

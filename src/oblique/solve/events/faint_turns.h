@@ -45,7 +45,8 @@ class FaintTurns {
   /// Whether a turn of a switch was found before.
   bool is_known(std::uint32_t s) const;
   /// Whether an event function has been far from zero, beside its error, in the time `since` it turned over
-  /// last [s], and is within that now; not among turns that come ever more quickly.
+  /// last [s], and is within what errors may come to together now; not among turns that come ever more
+  /// quickly.
   bool comes_from_afar(double event_function, double error, double excursion, double since) const;
   /// The first of each switch.
   const std::vector<FaintTurn>& found() const { return found_; }

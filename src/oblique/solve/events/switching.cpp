@@ -316,7 +316,8 @@ void Switching::look_at_miss(const EventSearch::NearMiss& miss, const Interpolan
                                     event_functions_.thresholds().excursion(s),
                                     miss.time - settling_.last_turn(s)))
     return;
-  FaintTurn turn{s, miss.time, errors[s], false, event_functions_.states_behind(s)};
+  const double error = std::max(errors[s], std::abs(event_functions_[s]));
+  FaintTurn turn{s, miss.time, error, false, event_functions_.states_behind(s)};
   const auto looked = [&] {
     std::vector<double> values = readings(miss.time, x);
     if (values.empty()) return values;
