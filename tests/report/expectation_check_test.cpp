@@ -108,6 +108,24 @@ until = 20
   }
 }
 
+// An ideal amplifier falls from fold to fold of y − y³/3 = −x; x′ = −y leads it there and back in 3 − 2 ln 2
+// s (van der Pol 1926). The row before a jump and that behind it are 0.6 ms apart.
+TEST(Expectations, FindPeriodsByJumpsOfLoops) {
+  const Compiled made(R"toml(
+y2 = { type = "squarer", in = "y" }
+y3 = { type = "multiplier", in = ["y", "y2"] }
+y  = { type = "servo-amplifier", in = ["-y", "0.3333333333333333*y3", "-x"], gain = "inf", initial = 2 }
+x  = { type = "integrator", in = "-y", initial = 0.6666666666666666 }
+)toml",
+                      R"toml([run]
+until = 20
+[expect]
+"y period" = { value = "3 - 2*log(2)", within = 1e-6 }
+)toml");
+  const auto results = check(made);
+  EXPECT_TRUE(results.front().met) << to_text(results);
+}
+
 TEST(Expectations, AskForEachTimeOnceInOrder) {
   const Compiled made(kCircle, R"toml([run]
 until = 4

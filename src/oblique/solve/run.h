@@ -74,7 +74,7 @@ struct Run {
   Trajectory extra;                 ///< the same columns at `extra_times`
   std::vector<EventRecord> events;  ///< the first thousand
   long event_count = 0;
-  std::vector<double> event_times;  ///< [s] ascending, of the first million, but for jumps of algebraic loops
+  std::vector<double> event_times;  ///< [s] ascending, of the first million
   RunState state;                   ///< at the end: `until`, or earlier where the run was interrupted
   std::vector<Extremes> extremes;   ///< of every output, where asked for
   std::vector<Peak> peaks;          ///< of every signal of the program, in its order; at the rows, or watched

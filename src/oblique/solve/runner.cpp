@@ -127,7 +127,10 @@ void Runner::step_to_end() {
 /// Gathers what the run has given.
 void Runner::finish() {
   sampler_.result.events = events();
-  sampler_.result.event_times = switching_.log().times();
+  std::vector<double>& times = sampler_.result.event_times;
+  times = switching_.log().times();
+  for (const EventRecord& jump : branches_.jumps())
+    times.insert(std::upper_bound(times.begin(), times.end(), jump.time), jump.time);
   sampler_.result.event_count = switching_.log().count() + static_cast<long>(branches_.jumps().size());
   sampler_.result.state = RunSnapshot(end_, parts()).named(program_);
   sampler_.result.warnings = warnings();
