@@ -240,6 +240,12 @@ bool Runner::look_at_piece() {
 
 void Runner::pass_piece() {
   const Segments::Passed passed = segments_.pass(t_);
+  if (sensitivities_) {
+    if (integration_)
+      sensitivities_->pass(piece_begin_, t_, integration_->solver());
+    else
+      sensitivities_->pass(piece_begin_, t_, ConstantStates(states_));
+  }
   if (sensitivities_ && passed == Segments::Passed::segment) {
     if (switching_.slides()) sensitivities_->refuse_slide(t_);
     std::vector<double> before = states_;

@@ -278,6 +278,45 @@ TEST(Sensitivities, RefuseWhatTheyDoNotKnow) {
                         "surface from there"));
 }
 
+// The angle of (cos Ωt, Ω sin Ωt), Ω = √k, goes past 180° at Ωt = π. Its own sensitivity does not jump, nor
+// does that of what is the same before and behind; what integrates it is refused, and what compares it.
+TEST(Sensitivities, OfAnAngleThatGoesPastHalfATurn) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("angle", R"toml([inputs]
+x = { doc = "x" }
+y = { doc = "y" }
+[outputs]
+out = { doc = "its angle" }
+[equations]
+out = "atan2(y, x)"
+)toml");
+  const std::string rotation =
+      "k = { type = \"potentiometer\", in = \"c\", setting = 0.81 }\n"
+      "c = { type = \"integrator\", in = \"-s\", initial = 1 }\n"
+      "s = { type = \"integrator\", in = \"k\" }\n"
+      "angle = { type = \"angle\", x = \"c\", y = \"s\" }\n";
+  const Compiled alone(rotation, "", library);
+  const auto by_k = [](double t) {
+    const double omega = 0.9, c = std::cos(omega * t), s = std::sin(omega * t);
+    return (s * c + omega * t) / (c * c + omega * omega * s * s) / (2 * omega);
+  };
+  expect_column(differentiated(alone, {"k.setting"}, 6), "d(angle)/d(k.setting)", kTolerance * 10, by_k);
+  // x² of the angle does not jump either.
+  const Compiled even(rotation +
+                          "square = { type = \"multiplier\", x = \"angle\", y = \"angle\" }\n"
+                          "sum = { type = \"integrator\", in = \"square\" }\n",
+                      "", library);
+  EXPECT_NO_THROW(differentiated(even, {"k.setting"}, 6));
+  for (const char* follower : {"f = { type = \"integrator\", in = \"angle\" }\n",
+                               "f = { type = \"comparator\", in = [\"angle\", \"-one\"] }\n"
+                               "one = { type = \"constant\", value = 1 }\n"}) {
+    const Compiled followed(rotation + follower, "", library);
+    EXPECT_NO_THROW(differentiated(followed, {"k.setting"}, 3.4)) << follower;
+    EXPECT_THAT(testing::message_of<text::Error>([&] { differentiated(followed, {"k.setting"}, 6); }),
+                HasSubstr("at t = 3.49066 s: an angle goes past 180° there, where atan2 jumps by a turn"))
+        << follower;
+  }
+}
+
 // Of the shipped diagrams, by their first parameters: central differences of whole runs, which err by about
 // as much as those over half the step differ from them.
 TEST(Sensitivities, AgreeWithDifferencesOfRuns) {

@@ -12,6 +12,7 @@
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/assembly/parameter_numbers.h>
 #include <oblique/network/program/parameter_setting.h>
+#include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
@@ -78,6 +79,14 @@ Sensitivities::Sensitivities(const network::Program& program, const diagram::Fla
       !same(made.discrete_states, program.discrete_states()) || made.events.size() != run_events_.size())
     refuse(0, "next to its value a parameter makes another circuit, of other elements");
   network::ParameterDerivatives columns = network::with_parameter_derivatives(made, wanted);
+  first_angle_ = made.signals.size();
+  for (network::NodeId id = 0; id < made.graph.size(); ++id) {
+    const network::Node& node = made.graph[id];
+    if (node.op != network::Op::atan2 || !node.continuous) continue;
+    made.signals.insert(made.signals.end(), {node.a, node.b});
+    made.signal_names.insert(made.signal_names.end(), 2, "of an angle");
+    ++n_angles_;
+  }
   layout_ = network::with_tangents(std::move(made), wanted);
   network::Network rates = layout_.network;
   for (std::size_t i = 0; i < rates.states.size(); ++i)
@@ -226,6 +235,55 @@ void Sensitivities::output_by_states(double t, std::span<const double> x, std::s
     evaluate_or_refuse(t, x, {0, unit, {}});
     unit[i] = 0;
     values[i] = wanted.scale * values_[layout_.signals + program_->signal_index(wanted.signal)];
+  }
+}
+
+void Sensitivities::pass(double from, double to, const Interpolant& within) {
+  if (n_angles_ == 0) return;
+  std::vector<double> x(run_states_.size());
+  const auto coordinates_at = [&](double t) {
+    within.states_at(t, x);
+    evaluate_or_refuse(t, x, {});
+    const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(first_angle_);
+    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(2 * n_angles_));
+  };
+  const std::vector<double> before = coordinates_at(from), after = coordinates_at(to);
+  for (std::size_t angle = 0; angle < n_angles_; ++angle) {
+    if ((before[2 * angle] < 0) != (after[2 * angle] < 0)) refuse_jump_of_angle(angle, from, to, within);
+  }
+}
+
+/// Where y of an atan2(y, x) changes its sign with x below zero, it goes over from π to −π or back. What
+/// follows from it alone, or from its sine, does not care: what integrates it, or compares it, does.
+void Sensitivities::refuse_jump_of_angle(std::size_t angle, double from, double to,
+                                         const Interpolant& within) {
+  constexpr double kMoment = 1e-9;  // of the way from one end to the other
+  constexpr double kJump = 1e-6;    // in so short a time: of what is compared, or of a machine unit
+  std::vector<double> x(run_states_.size()), rates(x.size());
+  const auto look = [&](double t) {
+    within.states_at(t, x);
+    evaluate_or_refuse(t, x, {});
+    return values_[first_angle_ + 2 * angle] < 0;
+  };
+  const auto followers = [&](double t) {
+    look(t);
+    if (!program_->derivatives(t, x.data(), rates.data(), *workspace_)) refuse(t, "an algebraic loop fails");
+    std::vector<double> all = rates;
+    const auto events = values_.begin() + static_cast<std::ptrdiff_t>(layout_.event_values);
+    all.insert(all.end(), events, events + static_cast<std::ptrdiff_t>(run_switches_.size()));
+    return all;
+  };
+  double low = from, high = to;
+  const bool below = look(from);
+  while (high - low > std::max(kMoment * (to - from), time_resolution(to))) {
+    const double middle = (low + high) / 2;
+    (look(middle) == below ? low : high) = middle;
+  }
+  if (values_[first_angle_ + 2 * angle + 1] >= 0) return;
+  const std::vector<double> before = followers(low), after = followers(high);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (!(std::abs(after[i] - before[i]) <= kJump * (1 + std::abs(before[i]))))
+      refuse(high, "an angle goes past 180° there, where atan2 jumps by a turn");
   }
 }
 

@@ -12,6 +12,7 @@
 #include <oblique/diagram/flat_diagram.h>
 #include <oblique/network/program/program.h>
 #include <oblique/network/program/tangent_network.h>
+#include <oblique/solve/integrator/interpolant.h>
 #include <oblique/solve/sensitivity/sensitivity_parameters.h>
 
 namespace oblique::solve {
@@ -53,6 +54,8 @@ class Sensitivities {
   /// d output/dx of one output, by each state; with the unknowns of algebraic loops as they follow.
   void output_by_states(double t, std::span<const double> x, std::size_t output, std::span<double> values);
 
+  /// The run goes on from `from` to `to` without an event. Refuses what jumps there all the same.
+  void pass(double from, double to, const Interpolant& within);
   /// An event is about to be settled; then it is.
   void before_event(double t, std::span<const double> x, std::vector<std::vector<double>> s);
   void after_event(double t, std::span<const double> x, const network::Workspace& run);
@@ -71,6 +74,7 @@ class Sensitivities {
   void evaluate_or_refuse(double t, std::span<const double> x, const Direction& along);
   bool differentiate_rates(double t, const double* x);
   void load(const network::Workspace& run);
+  void refuse_jump_of_angle(std::size_t angle, double from, double to, const Interpolant& within);
   void start_states(double t, std::span<const double> x);
   void start_memories(double t, std::span<const double> x, const network::Workspace& run);
   void refuse_turns_at_start(double t, std::span<const double> x);
@@ -94,7 +98,8 @@ class Sensitivities {
   std::vector<network::Event> run_events_;
   std::vector<std::uint32_t> mode_states_;
   std::size_t n_unknowns_, n_discrete_states_;
-  network::TangentNetwork layout_;  ///< without its network
+  std::size_t first_angle_ = 0, n_angles_ = 0;  ///< signals: y and x of each atan2(y, x)
+  network::TangentNetwork layout_;              ///< without its network
   std::unique_ptr<network::Program> program_;
   std::unique_ptr<network::Workspace> workspace_;
   std::vector<double> discrete_states_;        ///< of the run
