@@ -105,6 +105,74 @@ d = { type = "comparator", in = "-z" }
   }
 }
 
+// What follows the time alone comes to its level and rests there, or turns back from it. (Comparisons and
+// their counters are exact.)
+TEST(Events, WhatEndsOrTurnsBackAtItsLevelDoesNotHold) {
+  for (const char* signal :
+       {R"(r = { type = "ramp", start = 0, stop = 0.3 }
+level = { type = "constant", value = 0.3 })",
+        R"(r = { type = "limiter", in = "u", low = -0.3, high = 0.3 }
+u = { type = "ramp", slope = 0.37 }
+level = { type = "constant", value = 0.3 })",
+        R"toml(r = { type = "time-function", formula = "min(time, 1)" }
+level = { type = "constant", value = 1 })toml",
+        R"(r = { type = "recording", data = [[0, 0], [1, 1], [2, 1], [3, 0]] }
+level = { type = "constant", value = 1 })",
+        R"(r = { type = "recording", data = [[0, 0], [0.7, 1], [1.4, 0], [2, 1], [3, 0]] }
+level = { type = "constant", value = 1 })"}) {
+    const Compiled made(std::string(signal) + R"(
+c = { type = "comparator", in = ["r", "-level"] }
+n = { type = "counter", clock = "c" }
+x = { type = "integrator", in = "c" })");
+    const auto result = run_of(made, {.until = 3});
+    EXPECT_EQ(row_values(result, "n.out").back(), 0) << signal;
+    EXPECT_EQ(row_values(result, "x").back(), 0) << signal;
+  }
+}
+
+// A step and a counter of it are equal from then on; a product with a step to 0 is zero, and a sum of two
+// that are: also where a ramp is part of it, which has its times known.
+TEST(Events, WhatJumpsToItsLevelDoesNotHold) {
+  for (const char* signal : {R"(u = { type = "step", at = 1 }
+k = { type = "counter", clock = "u" }
+d = { type = "summer", in = ["u", "-k.out"] })",
+                             R"(v = { type = "step", at = 1 }
+r = { type = "ramp", slope = -0.3, start = 0, stop = 1 }
+d = { type = "summer", in = ["r", "0.3*v"] })",
+                             R"(u = { type = "step", at = 1, from = -1, to = 0 }
+r = { type = "ramp" }
+d = { type = "multiplier", x = "u", y = "r" })",
+                             R"(u = { type = "step", at = 1, from = 1, to = 0 }
+s = { type = "ramp", start = 5 }
+d = { type = "summer", in = ["-u", "s"] })"}) {
+    const Compiled made(std::string(signal) + R"(
+c = { type = "comparator", in = "d" }
+e = { type = "comparator", in = "-d" }
+x = { type = "integrator", in = ["c"] }
+y = { type = "integrator", in = ["e"] })");
+    const auto result = run_of(made, {.until = 3});
+    EXPECT_EQ(row_values(result, "c").back(), 0) << signal;
+    EXPECT_EQ(row_values(result, "e").back(), 0) << signal;
+    // None of them holds but before 1.
+    EXPECT_LE(row_values(result, "x").back() + row_values(result, "y").back(), 1 + 1e-12) << signal;
+  }
+}
+
+// A counting converter stops at the step that is equal to what it converts, on whichever side of it rounding
+// puts the sum of the steps.
+TEST(Events, ACounterStopsWhereItIsEqual) {
+  for (int steps = 1; steps <= 20; ++steps) {
+    const Compiled made(fmt::format(R"(
+v = {{ type = "constant", value = {} }}
+clock = {{ type = "pulse-train", period = 0.1, width = 0.05, delay = 0.1 }}
+above = {{ type = "comparator", in = ["v", "-k.out"] }}
+gate = {{ type = "multiplier", x = "clock", y = "above" }}
+k = {{ type = "counter", clock = "gate", step = 0.05 }})",
+                                    0.05 * steps));
+    EXPECT_NEAR(row_values(run_of(made, {.until = 3}), "k.out").back(), 0.05 * steps, 1e-15) << steps;
+  }
+}
+
 // t − 1, 2(t − 1) and −3(t − 1) cross zero at one instant, wherever rounding puts each of them: between the
 // comparators there is no moment at which one has turned over and another has not.
 TEST(Events, WhatCrossesTogetherTurnsTogether) {

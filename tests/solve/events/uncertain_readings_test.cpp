@@ -45,6 +45,18 @@ f = { type = "jk-flip-flop", j = "u", k = "zero", clock = "p" })"),
               ElementsAre(HasSubstr("'f' sets what it keeps by a signal that jumps at the same instant")));
 }
 
+// A pulse is stored at its end, by a pulse that ends with it.
+TEST(UncertainReadings, OfASignalThatAnEventChangesTogetherWithTheControlAreToldOf) {
+  EXPECT_THAT(
+      warnings_of(R"(
+control = { type = "pulse-train", period = 1, width = 0.5, delay = 0.25 }
+u = { type = "pulse-train", period = 1, width = 0.5, delay = 0.25, high = 0.3 }
+s = { type = "track-and-store", in = "u", track = "control" })"),
+      ElementsAre(
+          "'s' sets what it keeps by a signal that jumps at the same instant: at t = 0.75 s it takes 0, from "
+          "after the jump; before it that was 0.3"));
+}
+
 // Nothing is uncertain where the step comes a little before, where what is stored is continuous, and where
 // stores hand over to each other at one instant: each takes what the other one had.
 TEST(UncertainReadings, OfWhatIsInOrderAreNotToldOf) {

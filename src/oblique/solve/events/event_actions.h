@@ -29,14 +29,12 @@ class EventActions {
   /// Where the run ends [s]: Zeno behaviour that would be complete later is none.
   void end_at(double t) { end_ = t; }
 
-  /// A new instant: no event has come at it yet.
+  /// A new instant: no event has come at it yet, and the discrete states are as they are before it.
   void begin_instant() {
     came_.assign(came_.size(), false);
     jumped_ = false;
-    uncertain_.begin_instant();
+    uncertain_.begin_instant(workspace_.discrete_states());
   }
-  /// Which switches have turned over at this instant: see UncertainReadings.
-  void note_turns(std::span<const double> before) { uncertain_.note_turns(before); }
 
   /// What events have done at one instant.
   struct Effect {

@@ -95,13 +95,24 @@ bool SwitchSettling::waits(std::size_t s, double event_function, double t) {
   const double may_be_near = unrest_[s].touch ? event_functions_.thresholds()[s] : rounding;
   if (starting_ || near_size(s) > may_be_near || is_announced(program_.switch_structure().unit[s]))
     return false;
-  const bool is_put_on_zero = set_ && event_function == 0 && before_instant_[s] != 0;
-  if (is_put_on_zero || !(std::abs(event_function - before_instant_[s]) <= rounding)) return false;
+  if (is_put_on_zero(s, event_function, t) || !(std::abs(event_function - before_instant_[s]) <= rounding))
+    return false;
   const double error = event_functions_.weigh_errors()[s];
   const double known_to = std::max(error, event_functions_.thresholds().resolution(s));
   const bool is_in_place = position(s) == (event_function > 0 ? 1 : 0);
   if (is_in_place && size <= rounding && size > known_to) return true;
   return size <= std::max(rounding, error) && rates_before_[s] * (t - unrest_[s].last) <= kSlow * error;
+}
+
+/// Whether something at this instant at t has put an event function on zero to rounding, which had not come
+/// to it by itself (a counter that reaches what it is compared with): the switch does not hold there.
+bool SwitchSettling::is_put_on_zero(std::size_t s, double event_function, double t) const {
+  const double rounding = event_functions_.thresholds().rounding(s), before = before_instant_[s];
+  if (starting_ || is_announced(program_.switch_structure().unit[s]) ||
+      !(std::abs(event_function) <= rounding))
+    return false;
+  return unrest_[s].last == t || !(std::abs(event_function - before) <= rounding) ||
+         (set_ && event_function == 0 && before != 0);
 }
 
 /// Whether any switch of a unit is.
@@ -148,13 +159,14 @@ void SwitchSettling::watch_pace(std::size_t s, double t) {
   throw log_.piled_up(made.block, made.comparison, *unrest.piles_up, t);
 }
 
-/// Where a switch goes that follows time alone.
-double SwitchSettling::known_position(std::size_t s) const {
-  if (announced_[s]) return *announced_[s];
-  if (event_functions_.is_off_zero(s)) return event_functions_[s] > 0 ? 1 : 0;
-  const double rate = event_functions_.known_rate(s).value_or(0);
-  if (rate != 0) return rate > 0 ? 1 : 0;
-  return position(s);
+/// Where a switch goes that follows the time alone, by its event function and the rate of that as all others
+/// stand now. At its level, where it rests (a ramp that ends, the difference of two counters), it does not
+/// hold.
+double SwitchSettling::known_position(std::size_t s, double event_function, double rate) const {
+  const bool is_due = announced_[s] && rate != 0;
+  if (!is_due && std::abs(event_function) > event_functions_.thresholds()[s])
+    return event_function > 0 ? 1 : 0;
+  return rate > 0 ? 1 : 0;
 }
 
 /// Turns every switch over whose event function asks for it, and collects the units that lie on their
@@ -170,7 +182,7 @@ bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vect
     double asked = before;
     if (event_functions_.is_known(s)) {
       if (chained_ && program_.is_ordered(s)) continue;  // is where it belongs
-      asked = known_position(s);
+      asked = known_position(s, event_functions_[s], event_functions_.known_rate(s).value_or(0));
     } else if (waits(s, event_functions_[s], t)) {
       continue;
     } else if (is_near(s)) {
@@ -199,10 +211,7 @@ void SwitchSettling::turn_in_order(double t, std::span<const double> x) {
         const bool due = announced_[s].has_value();
         if (event_functions_.is_known(s)) {
           if (!chained_) return;
-          const double asked = away && !due ? (event_function > 0 ? 1 : 0)
-                               : rate != 0  ? (rate > 0 ? 1 : 0)
-                                            : announced_[s].value_or(position(s));
-          turn(s, asked, t);
+          turn(s, known_position(s, event_function, rate), t);
           return;
         }
         const bool decided = due || slide_.holds(s) || slide_.follows(s) || slide_.rests(s) || rested_[s] ||
@@ -213,13 +222,11 @@ void SwitchSettling::turn_in_order(double t, std::span<const double> x) {
 
 /// Where the switches of a unit that lies on its switching surface are left where they may be on either side.
 /// At zero none of them need hold, though their event functions be opposite.
-void SwitchSettling::add_preferred(std::uint32_t unit, std::vector<double>& preferred) const {
+void SwitchSettling::add_preferred(std::uint32_t unit, double t, std::vector<double>& preferred) const {
   const network::SwitchStructure& structure = program_.switch_structure();
-  const auto& members = structure.members[unit];
-  for (const std::uint32_t s : members) {
-    preferred[s] = set_ && event_functions_[s] == 0 ? 0 : position(s);  // put on its level it is not above it
-    preferred[s] = announced_position(structure, announced_, s).value_or(preferred[s]);
-    if (event_functions_[s] == 0) preferred[s] = 0;
+  for (const std::uint32_t s : structure.members[unit]) {
+    preferred[s] = announced_position(structure, announced_, s).value_or(position(s));
+    if (event_functions_[s] == 0 || is_put_on_zero(s, event_functions_[s], t)) preferred[s] = 0;
   }
 }
 
@@ -267,7 +274,7 @@ bool SwitchSettling::decide_together(const Units& units, double t, std::span<con
   Units may_stop;
   for (const std::uint32_t unit : units) {
     decided_[unit] = true;
-    add_preferred(unit, preferred);
+    add_preferred(unit, t, preferred);
     if (is_at_level(unit) && !has_unit(slid_, unit)) may_stop.push_back(unit);
   }
   std::vector<double> before;

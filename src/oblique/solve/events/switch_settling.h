@@ -75,13 +75,14 @@ class SwitchSettling {
   double near_size(std::size_t s) const;
   bool is_near(std::size_t s) const;
   bool waits(std::size_t s, double event_function, double t);
+  bool is_put_on_zero(std::size_t s, double event_function, double t) const;
   bool is_announced(std::uint32_t unit) const;
   void turn(std::size_t s, double position, double t);
   void watch_pace(std::size_t s, double t);
-  double known_position(std::size_t s) const;
+  double known_position(std::size_t s, double event_function, double rate) const;
   bool turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned);
   void turn_in_order(double t, std::span<const double> x);
-  void add_preferred(std::uint32_t unit, std::vector<double>& preferred) const;
+  void add_preferred(std::uint32_t unit, double t, std::vector<double>& preferred) const;
   bool is_at_level(std::uint32_t unit) const;
   void begin(const Units& kept, double t, std::span<const double> x);
   void decide(const Units& units, double t, std::span<const double> x);

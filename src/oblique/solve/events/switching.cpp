@@ -191,10 +191,7 @@ void Switching::settle(double t, std::vector<double>& x) {
   resting_.begin_instant();
   for (int round = 0;; ++round) {
     settle_switches(t, x);
-    if (round == 0) {
-      record_turns(before, t);
-      actions_.note_turns(before);
-    }
+    if (round == 0) record_turns(before, t);
     resting_.look(t, x);
     if (!serve_events(t, x, false) && !resting_.lower(t, x)) break;
     if (round > kMostRounds) throw log_.endless("events set each other off", t);

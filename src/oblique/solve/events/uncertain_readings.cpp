@@ -27,49 +27,54 @@ UncertainReadings::UncertainReadings(const network::Program& program, network::W
       told_(program.events().size()),
       signals_(program.n_signals()) {}
 
-void UncertainReadings::note_turns(std::span<const double> before) {
-  for (std::uint32_t s = 0; s < program_.switches().size(); ++s) {
-    const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-    if (before[discrete_state] != workspace_.discrete_state(discrete_state))
-      turned_.push_back({s, before[discrete_state]});
+/// What has changed at this instant, as it was before: but the comparisons that the conditions of these
+/// events are made of, and what their blocks keep, which are known as they are from now on.
+std::vector<UncertainReadings::Put> UncertainReadings::as_before(std::span<const std::size_t> events) const {
+  if (before_.empty()) return {};  // where the run starts
+  std::vector<bool> own(before_.size());
+  for (const std::size_t event : events) {
+    const network::Event& what = program_.events()[event];
+    for (const std::uint32_t s : program_.switch_structure().positions_in(what.condition)) {
+      const network::Switch& made = program_.switches()[s];
+      if (made.block == what.block) own[made.discrete_state] = true;
+    }
+    for (const network::Event& other : program_.events()) {
+      if (other.block != what.block) continue;
+      for (const network::Event::Action& action : other.actions) {
+        if (!action.on_state) own[action.index] = true;
+      }
+    }
   }
-}
-
-/// Whether a switch is a comparison that the condition of an event is made of: then it is known as it is from
-/// now on.
-bool UncertainReadings::sets_off(std::uint32_t s, std::size_t event) const {
-  const network::Event& what = program_.events()[event];
-  if (program_.switches()[s].block != what.block) return false;
-  const std::vector<std::uint32_t> own = program_.switch_structure().positions_in(what.condition);
-  return std::binary_search(own.begin(), own.end(), s);
+  std::vector<Put> changed;
+  for (std::uint32_t m = 0; m < before_.size(); ++m) {
+    if (!own[m] && workspace_.discrete_state(m) != before_[m]) changed.push_back({m, before_[m]});
+  }
+  return changed;
 }
 
 void UncertainReadings::look(std::span<const std::size_t> events, std::span<const double> values, double t,
                              std::span<const double> x) {
   if (std::all_of(events.begin(), events.end(), [&](std::size_t event) { return told_[event]; })) return;
-  std::vector<Turned> others;
-  std::copy_if(turned_.begin(), turned_.end(), std::back_inserter(others), [&](const Turned& turned) {
-    return std::none_of(events.begin(), events.end(),
-                        [&](std::size_t event) { return sets_off(turned.switch_index, event); });
-  });
-  if (!others.empty()) tell(events, values, values_with(others, events, t, x), t, {});
+  const std::vector<Put> before = as_before(events);
+  if (!before.empty()) tell(events, values, values_with(before, events, t, x), t, {});
   for (const std::uint32_t unit : slide_.units()) {
-    std::vector<Turned> flipped;
-    for (const std::uint32_t s : program_.switch_structure().members[unit])
-      flipped.push_back({s, 1 - workspace_.discrete_state(program_.switches()[s].discrete_state)});
-    tell(events, values, values_with(flipped, events, t, x), t,
-         program_.switches()[flipped.front().switch_index].block);
+    std::vector<Put> flipped;
+    const auto& members = program_.switch_structure().members[unit];
+    for (const std::uint32_t s : members) {
+      const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+      flipped.push_back({discrete_state, 1 - workspace_.discrete_state(discrete_state)});
+    }
+    tell(events, values, values_with(flipped, events, t, x), t, program_.switches()[members.front()].block);
   }
 }
 
-std::vector<double> UncertainReadings::values_with(std::span<const Turned> positions,
+std::vector<double> UncertainReadings::values_with(std::span<const Put> others,
                                                    std::span<const std::size_t> events, double t,
                                                    std::span<const double> x) {
   const std::vector<double> discrete_states(workspace_.discrete_states().begin(),
                                             workspace_.discrete_states().end());
   const KeptUnknowns kept(program_, workspace_);
-  for (const auto& [s, position] : positions)
-    workspace_.set_discrete_state(program_.switches()[s].discrete_state, position);
+  for (const auto& [discrete_state, value] : others) workspace_.set_discrete_state(discrete_state, value);
   std::vector<double> values;
   if (const auto there = program_.signals(t, x.data(), signals_.data(), workspace_)) {
     for (const std::size_t event : events) {

@@ -22,25 +22,22 @@ class UncertainReadings {
   UncertainReadings(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
                     EventLog& log, const std::string& file);
 
-  /// A new instant: no switch has turned over at it yet.
-  void begin_instant() { turned_.clear(); }
-  /// Which switches have turned over at this instant before any event has come: those of another position
-  /// than in `before`, the discrete states just before it.
-  void note_turns(std::span<const double> before);
+  /// A new instant, with the discrete states as they are before it.
+  void begin_instant(std::span<const double> before) { before_.assign(before.begin(), before.end()); }
 
   /// Looks at events that come at (t, x), whose actions are to set `values`, one after the other.
   void look(std::span<const std::size_t> events, std::span<const double> values, double t,
             std::span<const double> x);
 
  private:
-  struct Turned {
-    std::uint32_t switch_index;
-    double before;
+  struct Put {
+    std::uint32_t discrete_state;
+    double value;
   };
-  /// What the events would set with other positions of switches; empty where that has no value.
-  std::vector<double> values_with(std::span<const Turned> positions, std::span<const std::size_t> events,
-                                  double t, std::span<const double> x);
-  bool sets_off(std::uint32_t s, std::size_t event) const;
+  std::vector<Put> as_before(std::span<const std::size_t> events) const;
+  /// What the events would set with other discrete states; empty where that has no value.
+  std::vector<double> values_with(std::span<const Put> others, std::span<const std::size_t> events, double t,
+                                  std::span<const double> x);
   void tell(std::span<const std::size_t> events, std::span<const double> values,
             std::span<const double> others, double t, const std::string& sliding);
 
@@ -49,8 +46,8 @@ class UncertainReadings {
   const SlidingMode& slide_;
   EventLog& log_;
   const std::string& file_;
-  std::vector<Turned> turned_;
-  std::vector<bool> told_;  ///< of each event
+  std::vector<double> before_;  ///< the discrete states
+  std::vector<bool> told_;      ///< of each event
   std::vector<double> signals_;
 };
 
