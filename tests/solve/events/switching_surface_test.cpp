@@ -259,6 +259,24 @@ c = { type = "integrator", in = "b", limit = 1.1 }
   }
 }
 
+// An integrator rests at its limit, and a comparator compares it with that very limit, or with one beside it.
+TEST(Slide, IsToldOfWhereALevelIsReadAtWhichALimitHoldsSomething) {
+  const auto warnings = [](const char* level) {
+    std::vector<std::string> texts;
+    const Compiled made(std::string("one = { type = \"constant\", value = 1 }\n"
+                                    "x = { type = \"integrator\", in = \"one\", limit = 1 }\n"
+                                    "c = { type = \"comparator\", in = [\"x\", \"-") +
+                        level + "*one\"] }\n");
+    for (const text::Diagnostic& warning : run_of(made, {.until = 3}).warnings) texts.push_back(warning.what);
+    return texts;
+  };
+  EXPECT_THAT(warnings("1"),
+              ::testing::ElementsAre("'c' (in > 0) holds from t = 1 s on, where what it compares is "
+                                     "held at its very level: there the least offset decides"));
+  EXPECT_THAT(warnings("0.99"), ::testing::IsEmpty());
+  EXPECT_THAT(warnings("1.01"), ::testing::IsEmpty());
+}
+
 // c = ±1 by the sign of 0.5 c − x, x = 0.1: it agrees with itself on both sides.
 TEST(Switch, IsToldOfWhereItCouldStartOnItsOtherSide) {
   const std::string rest = "c = { type = \"comparator\", in = \"m\", low = -1, high = 1 }\n";

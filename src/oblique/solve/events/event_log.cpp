@@ -178,6 +178,16 @@ void EventLog::warn_of_rest(std::uint32_t unit, double since, double t) {
       "rests");
 }
 
+void EventLog::warn_of_held(std::uint32_t s, double t) {
+  const network::Switch& made = program_.switches()[s];
+  warn({{file_, {}},
+        fmt::format("'{}' ({}) holds from t = {:.9g} s on, where what it compares is held at its very level: "
+                    "there the least offset decides",
+                    made.block, made.comparison, t),
+        {},
+        "compare with a level beside this one"});
+}
+
 void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
                               double t) {
   std::vector<std::string> names;

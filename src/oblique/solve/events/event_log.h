@@ -44,6 +44,9 @@ class EventLog {
   /// since an earlier time, by its own turn.
   void warn_of_rest(std::uint32_t unit, double since, double t);
 
+  /// Tells that a comparison holds at its level, where something else has stopped what it compares.
+  void warn_of_held(std::uint32_t s, double t);
+
   /// Tells that switches which depend on each other may stand in more than one way, and how they do.
   void warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
                       double t);

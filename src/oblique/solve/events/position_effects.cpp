@@ -41,4 +41,36 @@ bool changes_rates(const network::Program& program, network::Workspace& workspac
   });
 }
 
+std::optional<std::uint32_t> idle_on_side(const network::Program& program, network::Workspace& workspace,
+                                          std::uint32_t unit, bool above, double t,
+                                          std::span<const double> x) {
+  const network::SwitchStructure& structure = program.switch_structure();
+  const auto& members = structure.members[unit];
+  const std::vector<double> positions(workspace.discrete_states().begin(), workspace.discrete_states().end());
+  std::vector<double> event_functions(program.switches().size()), rates(event_functions.size()),
+      derivatives(program.n_states());
+  const auto rate = [&]() -> std::optional<double> {
+    const auto here = program.event_functions(t, x.data(), event_functions.data(), workspace);
+    if (!here) return std::nullopt;
+    here->derivatives(derivatives.data());
+    here->event_function_rates(derivatives.data(), rates.data());
+    return rates[members.front()];
+  };
+  for (const std::uint32_t s : members)
+    workspace.set_discrete_state(program.switches()[s].discrete_state,
+                                 above != structure.opposite[s] ? 1 : 0);
+  const std::optional<double> resting = rate();
+  std::optional<std::uint32_t> found;
+  for (const std::uint32_t s : members) {
+    const network::Switch& made = program.switches()[s];
+    if (found || above == structure.opposite[s] || made.turning != network::Turning::jumps) continue;
+    workspace.set_discrete_state(made.discrete_state, 0);
+    const std::optional<double> without = rate();
+    if (resting && without && !differ(*resting, *without)) found = s;
+    workspace.set_discrete_state(made.discrete_state, 1);
+  }
+  workspace.load_discrete_states(positions);
+  return found;
+}
+
 }  // namespace oblique::solve

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <oblique/network/program/program.h>
@@ -19,6 +20,12 @@ inline bool differ(double a, double b) {
 /// Whether some signal at (t, x) is another with the switches of a unit turned over.
 bool changes_signals(const network::Program& program, network::Workspace& workspace, std::uint32_t unit,
                      double t, std::span<const double> x);
+
+/// A switch of a unit that holds on one of its sides, the upper one if `above`, and moves nothing of what it
+/// compares there; nothing where there is none.
+std::optional<std::uint32_t> idle_on_side(const network::Program& program, network::Workspace& workspace,
+                                          std::uint32_t unit, bool above, double t,
+                                          std::span<const double> x);
 
 /// Whether some rate of the states is.
 bool changes_rates(const network::Program& program, network::Workspace& workspace, std::uint32_t unit,

@@ -342,6 +342,12 @@ bool SlidingMode::is_held(std::size_t unit) const {
   return sides.above < 0 && sides.below > 0 && sides.weaker() > kDrives * strongest_[units_[unit]];
 }
 
+std::optional<bool> SlidingMode::rests_above(std::size_t unit) const {
+  const Drives sides = drives(unit);
+  if (!(sides.weaker() <= kNoDrive * sides.stronger()) || sides.stronger() == 0) return std::nullopt;
+  return std::abs(sides.above) < std::abs(sides.below);
+}
+
 SlidingMode::Doubt SlidingMode::doubt(std::size_t unit) const {
   const Drives sides = drives(unit);
   const bool is_let_go = repulsion(unit).value_or(-1) > -kNoDrive;

@@ -78,6 +78,9 @@ class SlidingMode {
   /// most by which they have ever driven together: above 0 they drive apart, and nothing holds it on the
   /// switching surface. Nothing of another, or where that tells nothing.
   std::optional<double> repulsion(std::size_t unit) const;
+  /// Of a unit that nothing couples and that rests on the one side to which the other drives: whether that is
+  /// the upper one.
+  std::optional<bool> rests_above(std::size_t unit) const;
   /// Whether both sides of a unit that nothing couples drive to the switching surface, and neither hardly.
   bool is_held(std::size_t unit) const;
   /// What is uncertain where a unit would leave the switching surface here.

@@ -7,6 +7,7 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/circle.h>
+#include <oblique/solve/events/position_effects.h>
 #include <oblique/solve/events/switching_start.h>
 #include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/readings/lone_states.h>
@@ -102,7 +103,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
   if (!active()) return;
   put_on_levels(t, x);
   settling_.tell_of_open(t, x);
-  log_.record_slides({}, {}, slide_, t);
+  record_slides({}, {}, t, x);
   settling_.end({});
 }
 
@@ -162,6 +163,21 @@ void Switching::record_turns(const std::vector<double>& before, double t) {
   }
 }
 
+/// Records which units have begun and ended to slide since those of `before` did, and tells what is uncertain
+/// of that: also what reads a level at which a limit holds something.
+void Switching::record_slides(const std::vector<std::uint32_t>& before,
+                              const std::vector<SlidingMode::Doubt>& doubts, double t,
+                              std::span<const double> x) {
+  log_.record_slides(before, doubts, slide_, t);
+  if (slide_.units() == before || !slide_.active() || !slide_.evaluate(t, x)) return;
+  for (std::size_t u = 0; u < slide_.units().size(); ++u) {
+    const std::uint32_t unit = slide_.units()[u];
+    const auto above = slide_.rests_above(u);
+    if (!above || std::find(before.begin(), before.end(), unit) != before.end()) continue;
+    if (const auto idle = idle_on_side(program_, workspace_, unit, *above, t, x)) log_.warn_of_held(*idle, t);
+  }
+}
+
 /// All switches, and the loops between them, where nothing has been served yet that follows from them.
 void Switching::settle_switches(double t, std::span<const double> x) {
   settling_.settle(t, x);
@@ -197,7 +213,7 @@ void Switching::settle(double t, std::vector<double>& x) {
     if (round > kMostRounds) throw log_.endless("events set each other off", t);
   }
   put_on_levels(t, x);
-  log_.record_slides(slid, doubts, slide_, t);
+  record_slides(slid, doubts, t, x);
   settling_.end(slid);
   location_.withdraw_all();
   event_functions_.evaluate(t, x, location_.announced());
