@@ -174,6 +174,19 @@ TEST(LoopJumps, OfALatchThatNothingSetsAreTold) {
   }
 }
 
+// a = −sign b, b = −sign a holds for ±1: each sign reads what another one has decided, not the unknown of the
+// loop.
+TEST(LoopJumps, OfSignsThatReadEachOtherAreTold) {
+  for (const std::string& blocks : both_orders({R"(a = { type = "sign", in = "-b" })",
+                                                R"(half = { type = "gain", in = "a", factor = 0.5 })",
+                                                R"(b = { type = "sign", in = "-half" })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 2});
+    ASSERT_EQ(result.warnings.size(), 1U) << blocks;
+    EXPECT_THAT(result.warnings[0].what,
+                HasSubstr("' has several solutions: at t = 0 s the run begins with "));
+  }
+}
+
 // It is set where the run starts, and keeps that when the input falls.
 TEST(LoopJumps, OfALatchThatIsSetAreItsOwn) {
   for (const std::string& blocks : both_orders(latch("-s"))) {

@@ -50,18 +50,29 @@ Eigen::VectorXd directions_of(const network::Program& program, std::size_t loop)
   return directions;
 }
 
-/// What turns over with the unknowns of an algebraic loop, and acts on it.
+/// What turns over with the unknowns of an algebraic loop, and acts on it, itself or by another (one sign
+/// that reads another).
 std::vector<std::uint32_t> switches_on(const network::Program& program, std::size_t loop) {
+  const network::SwitchStructure& structure = program.switch_structure();
+  const std::vector<bool> follows = structure.followers_of_loop(loop);
+  const std::vector<bool> acts = structure.discrete_states_below_loop(loop);
+  std::vector<bool> taken(follows.size());
   std::vector<std::uint32_t> found;
-  const std::vector<bool> follows = program.switch_structure().followers_of_loop(loop);
-  const std::vector<bool> acts = program.switch_structure().discrete_states_below_loop(loop);
+  const auto take = [&](std::uint32_t s) {
+    if (taken[s] || !follows[s] || program.switches()[s].rate) return;
+    taken[s] = true;
+    found.push_back(s);
+  };
   for (std::uint32_t s = 0; s < follows.size(); ++s) {
     const network::Switch& made = program.switches()[s];
-    if (!follows[s] || made.rate) continue;
-    const std::uint32_t acting =
-        made.moves_along ? program.events()[*made.moves_along].actions.front().index : made.discrete_state;
-    if (acts[acting]) found.push_back(s);
+    if (acts[made.moves_along ? program.events()[*made.moves_along].actions.front().index
+                              : made.discrete_state])
+      take(s);
   }
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    for (const std::uint32_t s : structure.positions_below(found[k])) take(s);
+  }
+  std::sort(found.begin(), found.end());
   return found;
 }
 
