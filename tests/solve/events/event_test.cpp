@@ -417,6 +417,39 @@ l = { type = "lim", in = "d" })",
   for (std::size_t r = 0; r < x.size(); ++r) EXPECT_NEAR(l[r], std::clamp(x[r] / 3, -0.2, 0.2), 1e-14) << r;
 }
 
+// c jumps from 1 to −1 or back, and a = |c| (or what is 1 above and 1/2 or less below) bends only then: in
+// between the root of 0.2 + a, by an ideal amplifier, has no value.
+TEST(Events, ALoopIsSolvedOnceTheSwitchesBeforeItStandWhereTheyBelong) {
+  for (const char* jumping :
+       {R"(c = { type = "sign", in = "u" })", R"(c = { type = "comparator", in = "u", low = -1 })",
+        R"(c = { type = "pulse-train", period = 0.7, width = 0.3, low = -1 })",
+        R"(c = { type = "function-generator", in = "u", points = [[-1, -1], [0, -1], [0, 1], [1, 1]] })"}) {
+    for (const auto& [bending, below] : std::vector<std::pair<const char*, double>>{
+             {R"(a = { type = "absolute-value", in = "c" })", 1},
+             {R"(a = { type = "limiter", in = "c", low = 0.1, high = 2 })", 0.1},
+             {R"(a = { type = "maximum", x = "c", y = "0*one" })", 0},
+             {R"(a = { type = "function-generator", in = "c", points = [[-2, 1], [0, 0], [2, 2]] })", 0.5}}) {
+      const Compiled made(std::string("u = { type = \"sine-source\", frequency = 0.669, phase = 0.4 }\n") +
+                          jumping + "\n" + bending + R"(
+one = { type = "constant" }
+d = { type = "summer", in = ["0.2*one", "a"] }
+q = { type = "square-root", in = "d", gain = "inf", bandwidth = "inf" }
+x = { type = "integrator", in = "q" }
+)");
+      const auto result = run_of(made, {.until = 3, .samples = 101});
+      EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+      const auto c = row_values(result, "c"), q = row_values(result, "q"), t = row_values(result, "t"),
+                 u = row_values(result, "u");
+      for (std::size_t row = 0; row < t.size(); ++row) {
+        EXPECT_NEAR(q[row], std::sqrt(0.2 + (c[row] > 0 ? 1 : below)), 1e-12)
+            << jumping << bending << t[row];  // rounding
+        if (std::string_view(jumping).find("pulse") == std::string_view::npos)
+          EXPECT_EQ(c[row] > 0, u[row] > 0) << jumping << bending << t[row];
+      }
+    }
+  }
+}
+
 TEST(Events, ALoopWithoutAnAgreeingModeIsRefusedByName) {
   // s = −sign s: neither position agrees with itself.
   const std::string message = message_of<SolveError>([&] {

@@ -177,7 +177,11 @@ void EventActions::add_changes(std::size_t event, const network::SignalEvaluatio
 std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<double>& x, bool starting) {
   const std::vector<Come> served = look(t, x, starting);
   if (served.empty()) return std::nullopt;
+  const bool tables = program_.events()[served.front().event].repeats;
+  // A loop may have no solution until the tables before it are moved along.
+  workspace_.pass_failing_loops(tables);
   const auto here = program_.signals(t, x.data(), signals_.data(), workspace_);
+  workspace_.pass_failing_loops(false);
   if (!here) throw loop_error(program_, workspace_.trouble(), t, file_);
   std::vector<Change> changes;
   std::vector<std::size_t> events;
@@ -202,7 +206,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
   }
   Effect effect;
   effect.events = events;
-  effect.tables = program_.events()[served.front().event].repeats;
+  effect.tables = tables;
   effect.before_start = starting && program_.events()[served.front().event].before_start;
   for (const Change& change : changes) {
     if (change.action->on_state) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/combinations.h>
@@ -38,6 +39,24 @@ bool agrees(const network::Program& program, network::Workspace& workspace, cons
   return true;
 }
 
+/// Moves the tables along whose ends have been passed, whatever loops have no solution yet; whether any was.
+bool move_tables(const network::Program& program, network::Workspace& workspace, double t,
+                 std::span<const double> x) {
+  std::vector<double> signals(program.n_signals());
+  std::vector<std::pair<std::uint32_t, double>> moved;
+  workspace.pass_failing_loops(true);
+  if (const auto here = program.signals(t, x.data(), signals.data(), workspace)) {
+    for (std::size_t e = 0; e < program.events().size(); ++e) {
+      const network::Event& event = program.events()[e];
+      if (event.repeats && here->condition(e))
+        moved.emplace_back(event.actions.front().index, here->action_value(e, 0));
+    }
+  }
+  workspace.pass_failing_loops(false);
+  for (const auto& [segment, to] : moved) workspace.set_discrete_state(segment, to);
+  return !moved.empty();
+}
+
 }  // namespace
 
 std::optional<network::Evaluation> place_others(const network::Program& program,
@@ -47,8 +66,10 @@ std::optional<network::Evaluation> place_others(const network::Program& program,
                                                 std::vector<double>& event_functions) {
   constexpr std::size_t kInOrder = 2;  // rounds before what is left goes in one
   bool turned = false;
+  std::vector<bool> unknown(event_functions.size(), false);
   const auto settle = [&](std::size_t s, double event_function) {
-    if (placed[s] || program.switches()[s].rate || std::abs(event_function) <= thresholds[s]) return;
+    if (placed[s] || unknown[s] || program.switches()[s].rate || std::abs(event_function) <= thresholds[s])
+      return;
     const std::uint32_t discrete_state = program.switches()[s].discrete_state;
     const double position = event_function > 0 ? 1 : 0;
     turned = turned || workspace.discrete_state(discrete_state) != position;
@@ -56,11 +77,21 @@ std::optional<network::Evaluation> place_others(const network::Program& program,
   };
   for (std::size_t round = 0; round <= 2 * event_functions.size() + 1; ++round) {
     auto here = program.event_functions(t, x.data(), event_functions.data(), workspace);
-    if (!here) return std::nullopt;
+    const bool known = here.has_value();
+    if (!known) {
+      // A loop may have no solution until the switches before it stand where they belong: the root of a
+      // magnitude whose argument has just changed its sign.
+      unknown = program.switch_structure().followers_of_loop(workspace.trouble().loop);
+      workspace.pass_failing_loops(true);
+      program.event_functions(t, x.data(), event_functions.data(), workspace);
+      workspace.pass_failing_loops(false);
+    } else {
+      unknown.assign(unknown.size(), false);
+    }
     turned = false;
     for (std::size_t s = 0; s < event_functions.size(); ++s) settle(s, event_functions[s]);
-    if (!turned) return here;
-    if (round == kInOrder) {
+    if (!turned && (known || !move_tables(program, workspace, t, x))) return here;
+    if (known && round == kInOrder) {
       const std::vector<double> still(x.size(), 0.0);
       program.decide_in_order(
           t, x.data(), still.data(), workspace,

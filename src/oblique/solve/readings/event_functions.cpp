@@ -68,8 +68,11 @@ void EventFunctions::take_slack_since(std::span<const double> before) {
 }
 
 /// Whether a switch is on the wrong side of its switching surface, or has not turned over though it was
-/// announced.
+/// announced, or a table is still to be moved along.
 bool EventFunctions::is_any_due(const Announced& announced) const {
+  for (std::size_t e = 0; e < program_.events().size(); ++e) {
+    if (program_.events()[e].repeats && here().condition(e)) return true;
+  }
   for (std::size_t s = 0; s < values_.size(); ++s) {
     const double position = workspace_.discrete_state(program_.switches()[s].discrete_state);
     if (announced[s] ? *announced[s] != position : against(s) > thresholds_[s]) return true;
