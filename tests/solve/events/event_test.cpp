@@ -199,6 +199,27 @@ m = { type = "counter", clock = "e" }
   }
 }
 
+// Twelve integrators that nothing couples but what feeds them rest at their limits, and leave them at one
+// instant, t = 1, as the sine turns its sign.
+TEST(Events, ManyThatFollowOneLeaveTheirLimitsTogether) {
+  std::string blocks = "u = { type = \"sine-source\", frequency = 0.5 }\n";
+  constexpr int kMany = 12;
+  for (int k = 0; k < kMany; ++k)
+    blocks +=
+        fmt::format("x{0} = {{ type = \"integrator\", in = \"{1}*u\", limit = 1.2 }}\n", k, 3 + 0.1 * k);
+  const auto result = run_of(Compiled(blocks), {.until = 2, .samples = 101});
+  const auto t = row_values(result, "t");
+  for (int k = 0; k < kMany; ++k) {
+    const auto x = row_values(result, fmt::format("x{}", k));
+    for (std::size_t row = 0; row < t.size(); ++row) {
+      const double fed = (3 + 0.1 * k) / std::numbers::pi, cosine = std::cos(std::numbers::pi * t[row]);
+      const double truth =
+          t[row] < 1 ? std::min(1.2, fed * (1 - cosine)) : std::max(-1.2, 1.2 - fed * (1 + cosine));
+      EXPECT_NEAR(x[row], truth, 1e-6) << k << " at " << t[row];  // a hundred tolerances
+    }
+  }
+}
+
 // y = sin 9t/cos t changes its sign at every multiple of π/9, and through its pole at π/2, where nothing is
 // known of its size: what comes later is seen as ever.
 TEST(Events, APoleHidesNoLaterCrossing) {

@@ -109,6 +109,29 @@ TEST(IndependentUnits, AreTakenTogetherWhereTheyAreMany) {
   EXPECT_EQ(units.parts_of(all).size(), IndependentUnits::kMostUnits);
 }
 
+// c acts on both relays, of which each acts on itself through its state; b follows a too.
+TEST(IndependentUnits, StandBehindThoseThatActOnThem) {
+  using Units = std::vector<std::uint32_t>;
+  const Compiled made(R"(b = { type = "sign", in = "y" }
+y = { type = "integrator", in = ["-b", "a", "c"] }
+a = { type = "sign", in = "x" }
+x = { type = "integrator", in = ["-a", "c"] }
+c = { type = "sign", in = "s" }
+s = { type = "sine-source" }
+)");
+  IndependentUnits units(made.program);
+  const std::uint32_t a = unit_of(made, "a"), b = unit_of(made, "b"), c = unit_of(made, "c");
+  EXPECT_EQ(units.mutual_of(Units{b, a, c}), (std::vector<Units>{{c}, {a}, {b}}));
+  // Two that act on each other stay together.
+  const Compiled ring(R"(a = { type = "sign", in = "x" }
+x = { type = "integrator", in = "b" }
+b = { type = "sign", in = "y" }
+y = { type = "integrator", in = "-a" }
+)");
+  const Units pair{unit_of(ring, "a"), unit_of(ring, "b")};
+  EXPECT_EQ(IndependentUnits(ring.program).mutual_of(pair), std::vector<Units>{pair});
+}
+
 // What the event of a store sets acts on the relay that reads it, and on no other.
 TEST(IndependentUnits, AreActedOnByEvents) {
   const Compiled made(R"(a = { type = "sign", in = "x" }

@@ -261,10 +261,18 @@ void SwitchSettling::decide(const Units& units, double t, std::span<const double
     }
     Units together;
     for (const Units& part : left) together.insert(together.end(), part.begin(), part.end());
-    const bool one = left.size() == 1;
-    if (one || !decide_together(together, t, x)) throw no_position(members_of(together).front(), t);
-    return;
+    if ((left.size() > 1 && decide_together(together, t, x)) || decide_in_order(together, t, x)) return;
+    throw no_position(members_of(together).front(), t);
   }
+}
+
+/// Decides more units than can be tried together, those first that act on the others. False where they all
+/// act on each other, or nothing agrees.
+bool SwitchSettling::decide_in_order(const Units& units, double t, std::span<const double> x) {
+  const std::vector<Units> groups = independent_.mutual_of(units);
+  return units.size() > Positions::kMostUnits && groups.size() > 1 &&
+         std::all_of(groups.begin(), groups.end(),
+                     [&](const Units& group) { return decide_together(group, t, x); });
 }
 
 /// False, with nothing changed, where nothing agrees.

@@ -86,6 +86,7 @@ class SwitchSettling {
   bool is_at_level(std::uint32_t unit) const;
   void begin(const Units& kept, double t, std::span<const double> x);
   void decide(const Units& units, double t, std::span<const double> x);
+  bool decide_in_order(const Units& units, double t, std::span<const double> x);
   bool decide_together(const Units& units, double t, std::span<const double> x);
   std::vector<std::uint32_t> members_of(const Units& units) const;
   bool choose_beside_slide(const Units& units, const std::vector<double>& preferred, const Units& may_stop,

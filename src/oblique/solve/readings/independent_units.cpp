@@ -2,6 +2,7 @@
 #include <oblique/solve/readings/independent_units.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace oblique::solve {
 
@@ -43,6 +44,31 @@ std::vector<std::vector<std::size_t>> IndependentUnits::parts_of(std::span<const
   for (std::size_t u = 0; u < units.size(); ++u) parts[part_of[u]].push_back(u);
   std::erase_if(parts, [](const auto& part) { return part.empty(); });
   return parts;
+}
+
+std::vector<std::vector<std::uint32_t>> IndependentUnits::mutual_of(std::span<const std::uint32_t> units) {
+  struct Group {
+    std::vector<std::uint32_t> units;
+    std::ptrdiff_t acting = 0;  ///< units that act on it: fewer than on what it acts on
+  };
+  std::vector<Group> groups;
+  for (const std::uint32_t unit : units) {
+    const auto own = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
+      return acts(group.units.front(), unit) && acts(unit, group.units.front());
+    });
+    if (own != groups.end()) {
+      own->units.push_back(unit);
+      continue;
+    }
+    const auto acting = std::count_if(
+        units.begin(), units.end(), [&](std::uint32_t other) { return other != unit && acts(other, unit); });
+    groups.push_back({{unit}, acting});
+  }
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const Group& a, const Group& b) { return a.acting < b.acting; });
+  std::vector<std::vector<std::uint32_t>> ordered;
+  for (Group& group : groups) ordered.push_back(std::move(group.units));
+  return ordered;
 }
 
 }  // namespace oblique::solve

@@ -30,6 +30,8 @@ class IndependentUnits {
   /// ascending. More than `kMostUnits` are taken to hang together.
   std::vector<std::vector<std::size_t>> parts_of(std::span<const std::uint32_t> units);
   static constexpr std::size_t kMostUnits = 64;
+  /// Those of some units that act on each other, together: each group behind those that act on it.
+  std::vector<std::vector<std::uint32_t>> mutual_of(std::span<const std::uint32_t> units);
 
  private:
   const network::SwitchStructure::Ancestry& ancestry(std::uint32_t unit);
