@@ -89,7 +89,7 @@ void EventLocation::withdraw_early(double t) {
 /// Whether what follows the time alone is as near to zero as the time shows.
 bool EventLocation::is_due(std::size_t s, double t) const {
   const auto rate = event_functions_.known_rate(s);
-  return rate && std::abs(event_functions_[s]) <= 8 * time_resolution(t) * std::abs(*rate);
+  return rate && std::abs(event_functions_[s]) <= off_at_zero(t, *rate);
 }
 
 void EventLocation::withdraw_past(double t, bool all) {

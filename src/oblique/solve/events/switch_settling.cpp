@@ -9,6 +9,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/position_effects.h>
 #include <oblique/solve/events/self_consistent.h>
+#include <oblique/solve/events/time_resolution.h>
 
 namespace oblique::solve {
 namespace {
@@ -108,8 +109,7 @@ bool SwitchSettling::waits(std::size_t s, double event_function, double t) {
 /// to it by itself (a counter that reaches what it is compared with): the switch does not hold there.
 bool SwitchSettling::is_put_on_zero(std::size_t s, double event_function, double t) const {
   const double rounding = event_functions_.thresholds().rounding(s), before = before_instant_[s];
-  if (starting_ || is_announced(program_.switch_structure().unit[s]) ||
-      !(std::abs(event_function) <= rounding))
+  if (is_announced(program_.switch_structure().unit[s]) || !(std::abs(event_function) <= rounding))
     return false;
   return unrest_[s].last == t || !(std::abs(event_function - before) <= rounding) ||
          (set_ && event_function == 0 && before != 0);
@@ -161,11 +161,11 @@ void SwitchSettling::watch_pace(std::size_t s, double t) {
 
 /// Where a switch goes that follows the time alone, by its event function and the rate of that as all others
 /// stand now. At its level, where it rests (a ramp that ends, the difference of two counters), it does not
-/// hold.
-double SwitchSettling::known_position(std::size_t s, double event_function, double rate) const {
-  const bool is_due = announced_[s] && rate != 0;
-  if (!is_due && std::abs(event_function) > event_functions_.thresholds()[s])
-    return event_function > 0 ? 1 : 0;
+/// hold; what is due goes where its rate leads, unless something else has taken it elsewhere at this instant.
+double SwitchSettling::known_position(std::size_t s, double event_function, double rate, double t) const {
+  const double threshold = event_functions_.thresholds()[s];
+  const double near = announced_[s] ? std::max(threshold, off_at_zero(t, rate)) : threshold;
+  if (std::abs(event_function) > near) return event_function > 0 ? 1 : 0;
   return rate > 0 ? 1 : 0;
 }
 
@@ -182,7 +182,7 @@ bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vect
     double asked = before;
     if (event_functions_.is_known(s)) {
       if (chained_ && program_.is_ordered(s)) continue;  // is where it belongs
-      asked = known_position(s, event_functions_[s], event_functions_.known_rate(s).value_or(0));
+      asked = known_position(s, event_functions_[s], event_functions_.known_rate(s).value_or(0), t);
     } else if (waits(s, event_functions_[s], t)) {
       continue;
     } else if (is_near(s)) {
@@ -211,7 +211,7 @@ void SwitchSettling::turn_in_order(double t, std::span<const double> x) {
         const bool due = announced_[s].has_value();
         if (event_functions_.is_known(s)) {
           if (!chained_) return;
-          turn(s, known_position(s, event_function, rate), t);
+          turn(s, known_position(s, event_function, rate, t), t);
           return;
         }
         const bool decided = due || slide_.holds(s) || slide_.follows(s) || slide_.rests(s) || rested_[s] ||

@@ -79,7 +79,7 @@ class SwitchSettling {
   bool is_announced(std::uint32_t unit) const;
   void turn(std::size_t s, double position, double t);
   void watch_pace(std::size_t s, double t);
-  double known_position(std::size_t s, double event_function, double rate) const;
+  double known_position(std::size_t s, double event_function, double rate, double t) const;
   bool turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned);
   void turn_in_order(double t, std::span<const double> x);
   void add_preferred(std::uint32_t unit, double t, std::vector<double>& preferred) const;
