@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -187,6 +189,20 @@ TEST(LoopJumps, OfSignsThatReadEachOtherAreTold) {
   }
 }
 
+// A pulse at the start sets it: what it would be before that is nobody's choice.
+TEST(LoopJumps, OfALatchThatAPulseSetsAtTheStartAreNotTold) {
+  for (const std::string& blocks : both_orders(
+           {R"(q = { type = "comparator", in = ["0.5*one", "-r", "-p"] })",
+            R"(p = { type = "comparator", in = ["0.5*one", "-s", "-q"] })", R"(one = { type = "constant" })",
+            R"(s = { type = "pulse-train", period = 1, width = 0.1, delay = 0.5 })",
+            R"(r = { type = "pulse-train", period = 1, width = 0.1 })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 0.9, .samples = 3});
+    EXPECT_TRUE(result.warnings.empty()) << blocks;
+    EXPECT_EQ(row_values(result, "q").front(), 0);
+    EXPECT_EQ(row_values(result, "q").back(), 1);
+  }
+}
+
 // It is set where the run starts, and keeps that when the input falls.
 TEST(LoopJumps, OfALatchThatIsSetAreItsOwn) {
   for (const std::string& blocks : both_orders(latch("-s"))) {
@@ -212,6 +228,73 @@ y = { type = "limiter", in = "s" }
       result.warnings[0].what,
       "the algebraic loop of 's', 'y' has several solutions: at t = 0 s the run begins with s = 0, and -2 "
       "is another; nothing in the diagram chooses between them");
+}
+
+/// Of an ideal amplifier behind a step from `from` to `to` at t = 0.5: what it gives before and after.
+std::pair<double, double> across(const std::string& loop, double from, double to) {
+  const std::string blocks = fmt::format(
+      "u = {{ type = \"step\", at = 0.5, from = {}, to = {} }}\none = {{ type = \"constant\" }}\n{}", from,
+      to, loop);
+  const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 3});
+  EXPECT_TRUE(result.warnings.empty()) << loop;
+  const auto q = row_values(result, "q");
+  return {q.front(), q.back()};
+}
+
+// q|q| + q = u: with the magnitude latched there is no solution for the other sign of u.
+TEST(LoopJumps, AreMadeByAmplifiersWhoseLoopHasNoSolutionOnItsSide) {
+  const auto [before, after] = across(R"(a = { type = "absolute-value", in = "q" }
+qa = { type = "multiplier", x = "q", y = "a" }
+q = { type = "servo-amplifier", in = ["qa", "q", "-u"], gain = "inf", bandwidth = "inf" })",
+                                      1, -1);
+  const double golden = (std::sqrt(5.0) - 1) / 2;
+  EXPECT_NEAR(before, golden, kNewton);
+  EXPECT_NEAR(after, -golden, kNewton);
+}
+
+// The inverse of a function given by points, of which the line for 0.244 lies beyond two others.
+TEST(LoopJumps, LeadAnAmplifierFromLineToLine) {
+  const auto [before, after] = across(
+      R"(s = { type = "function-generator", in = "q", points = [[-2, -1.878], [-1.432, -0.993], [-0.73, 1.281], [0.359, 1.507]] }
+q = { type = "servo-amplifier", in = ["s", "-u"], gain = "inf", bandwidth = "inf" })",
+      2.449, 0.244);
+  EXPECT_NEAR(before, 0.359 + (2.449 - 1.507) * (0.359 + 0.73) / (1.507 - 1.281), kNewton);
+  EXPECT_NEAR(after, -1.432 + (0.244 + 0.993) * (1.432 - 0.73) / (1.281 + 0.993), kNewton);
+}
+
+// s(q) + q/20 = 1 where the run starts, and u is −1 later on: the step does not stand yet where the table is
+// sought first.
+TEST(LoopJumps, FindTheStartOfATableBehindAStep) {
+  const auto [before, after] = across(
+      R"(s = { type = "function-generator", in = "q", points = [[-2, -3], [-0.5, -0.4], [0.3, 0.1], [0.9, 1.2], [2, 1.5]] }
+q = { type = "servo-amplifier", in = ["s", "0.05*q", "-u"], gain = "inf", bandwidth = "inf" })",
+      1, -1);
+  EXPECT_NEAR(before, (1 - 0.1 + 0.3 * 1.1 / 0.6) / (1.1 / 0.6 + 0.05), kNewton);
+  EXPECT_NEAR(after, (-1 + 0.4 - 0.5 * 2.6 / 1.5) / (2.6 / 1.5 + 0.05), kNewton);
+}
+
+// q² = 0.2 + clip(u): as long as the limiter has not turned over the amplifier would run to its other limit.
+// It goes from where it was when all has.
+TEST(LoopJumps, OfAnAmplifierBeginWhereItWasBeforeTheInstant) {
+  const auto [before, after] = across(R"(a = { type = "limiter", in = "u", low = 0, high = 2 }
+d = { type = "summer", in = ["0.2*one", "a"] }
+qq = { type = "squarer", in = "q" }
+q = { type = "servo-amplifier", in = ["qq", "-d"], initial = 0.5, gain = "inf", limit = 2 })",
+                                      1, -0.6);
+  EXPECT_NEAR(before, std::sqrt(1.2), kNewton);
+  EXPECT_NEAR(after, std::sqrt(0.2), kNewton);
+}
+
+// q³ − q = d has one solution above 1 and, for d = 0.2, two more: the amplifier starts from 1, whatever comes
+// later.
+TEST(LoopJumps, OfAnAmplifierKnowNothingOfAStepToCome) {
+  const auto [before, after] = across(R"(q2 = { type = "squarer", in = "q" }
+q3 = { type = "multiplier", x = "q2", y = "q" }
+q = { type = "servo-amplifier", in = ["q3", "-q", "-u"], initial = 1, gain = "inf", limit = 3 })",
+                                      0.2, -1);
+  EXPECT_NEAR(before * before * before - before, 0.2, kNewton);
+  EXPECT_GT(before, 1);
+  EXPECT_NEAR(after * after * after - after, -1, kNewton);
 }
 
 }  // namespace

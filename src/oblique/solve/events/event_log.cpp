@@ -27,6 +27,8 @@ std::string boundary_of(std::string comparison) {
   return comparison.replace(at, kAbove.size(), " = ");
 }
 
+constexpr std::string_view kOfSwitches = "the loop of the switches of ";
+
 }  // namespace
 
 const network::Switch& EventLog::first_of(std::uint32_t unit) const {
@@ -188,20 +190,25 @@ void EventLog::warn_of_held(std::uint32_t s, double t) {
         "compare with a level beside this one"});
 }
 
+void EventLog::forget_choices() {
+  std::erase_if(warnings_,
+                [](const text::Diagnostic& warning) { return warning.what.starts_with(kOfSwitches); });
+}
+
 void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
                               double t) {
   std::vector<std::string> names;
   names.reserve(switches.size());
   for (const std::uint32_t s : switches) names.push_back(fmt::format("'{}'", program_.switches()[s].block));
   const network::Switch& first = program_.switches()[switches.front()];
-  constexpr std::string_view kOf = "the loop of the switches of ", kHas = " has several solutions";
+  constexpr std::string_view kHas = " has several solutions";
   const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
-    return warning.what.starts_with(kOf) && std::all_of(names.begin(), names.end(), [&](const auto& name) {
-             return warning.what.find(name) < warning.what.find(kHas);
-           });
+    return warning.what.starts_with(kOfSwitches) &&
+           std::all_of(names.begin(), names.end(),
+                       [&](const auto& name) { return warning.what.find(name) < warning.what.find(kHas); });
   });
   if (told) return;
-  const std::string begin = fmt::format("{}{}{}", kOf, shortened(names), kHas);
+  const std::string begin = fmt::format("{}{}{}", kOfSwitches, shortened(names), kHas);
   warnings_.push_back(
       {{file_, {}},
        fmt::format("{}: at t = {:.9g} s the run goes on with '{}' ({}) {}; nothing in the diagram chooses "

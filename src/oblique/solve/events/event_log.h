@@ -50,6 +50,8 @@ class EventLog {
   /// Tells that switches which depend on each other may stand in more than one way, and how they do.
   void warn_of_choice(const std::vector<std::uint32_t>& switches, const network::Workspace& workspace,
                       double t);
+  /// Withdraws all that: where a run starts, an event has come since.
+  void forget_choices();
 
   /// The error of a run in which this block switches without end.
   SolveError endless(const std::string& block, const std::string& what, double t) const;

@@ -183,15 +183,14 @@ bool LoopJumps::settle(double t, std::span<const double> x) {
     if (!here) continue;
     std::vector<double> now;
     for (std::size_t u = 0; u < unknowns_.size(); ++u) now.push_back(workspace_.unknown(u));
-    const bool jumps =
-        watched.blind && part_between(unknowns_of(watched, unknowns_), unknowns_of(watched, now)) > kJump;
+    const bool jumps = part_between(unknowns_of(watched, unknowns_), unknowns_of(watched, now)) > kJump;
     if ((jumps || (watched.stable && !rests(watched, here->rates))) && go_from_before(watched, t, x))
       any = true;
   }
   return any;
 }
 
-bool LoopJumps::go_from_guesses(double t, std::span<const double> x) {
+bool LoopJumps::go(double t, std::span<const double> x) {
   return std::any_of(watched_.begin(), watched_.end(),
                      [&](Watched& watched) { return go_from_before(watched, t, x); });
 }

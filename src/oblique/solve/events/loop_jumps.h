@@ -25,9 +25,9 @@ bool may_have_several(const network::Program& program, std::size_t loop);
 /// loop keeps to its solution. An event may take that away, or leave the loop at one from which its elements
 /// would run away; and where there are several, Newton's method goes to any. The loop then goes where its
 /// elements take it from where it was, if they follow their inputs with one short lag, while the switches and
-/// tables in it turn over on the way. So go amplifiers that have limits, where they would run away from
-/// between these; of others see BranchWatch, and only where a run finds no start do they go so too. A loop on
-/// which something acts that slides stays as it is. Not installed.
+/// tables in it turn over on the way. So do amplifiers on whose loop a switch or a table acts; of others see
+/// BranchWatch, and only where a loop has no solution any more do they go so too. A loop on which something
+/// acts that slides stays as it is. Not installed.
 class LoopJumps {
  public:
   /// All must outlive this.
@@ -49,9 +49,9 @@ class LoopJumps {
   /// Looks at all loops at (t, x), where everything has settled. True where one was put elsewhere: everything
   /// is then to be settled again.
   bool settle(double t, std::span<const double> x);
-  /// Where a run finds no start at (t, x): lets the first loop go from its guess that comes to rest
-  /// elsewhere, one of amplifiers too. False where there is none.
-  bool go_from_guesses(double t, std::span<const double> x);
+  /// Where something has no solution at (t, x): lets the first loop go from where it was noted, or from its
+  /// guess, that comes to rest elsewhere, one of amplifiers too. False where there is none.
+  bool go(double t, std::span<const double> x);
 
  private:
   struct Watched {

@@ -82,21 +82,29 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     const auto effect = active() ? serve_events(t, x, starting) : std::nullopt;
     starting = starting && (!effect || effect->tables || effect->before_start);
     takes = takes && (!effect || !effect->sets_states);
-    if (effect) return true;
+    if (effect) {
+      log_.forget_choices();
+      return true;
+    }
     return std::exchange(loops_go, false) && loop_jumps_.settle(t, x);
   };
   loop_jumps_.place_at_guesses(t, x);
   Circle circle;
   for (int round = 0;; ++round) {
-    if (round > kMostRounds || circle.closes(workspace_.discrete_states(), x))
-      throw log_.endless("the start does not settle", t);
+    if (round > kMostRounds || circle.closes(workspace_.discrete_states(), x)) {
+      // Tables may lead a loop in a circle that begins where others did not stand yet.
+      if (std::exchange(has_gone, true) || !loop_jumps_.go(t, x))
+        throw log_.endless("the start does not settle", t);
+      circle = {};
+      round = 0;
+    }
     try {
       if (!goes_on()) break;
     } catch (const SolveError& failure) {
       // Where the switches in it stand for no signals yet, a loop may have no solution. (Nor where states
       // that start from signals are not there yet: where it would go then says nothing.)
       if (failure.kind() != SolveError::Kind::singular_loop || any_start || std::exchange(has_gone, true) ||
-          !loop_jumps_.go_from_guesses(t, x))
+          !loop_jumps_.go(t, x))
         throw;
     }
   }
@@ -107,6 +115,15 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
   settling_.end({});
 }
 
+/// Puts the switches that are due where they will be, but for what slides.
+void Switching::put_what_is_due() {
+  for (std::size_t s = 0; s < program_.switches().size(); ++s) {
+    const auto due = announced_position(program_.switch_structure(), location_.announced(), s);
+    if (due && !slide_.holds(s) && !slide_.follows(s))
+      workspace_.set_discrete_state(program_.switches()[s].discrete_state, *due);
+  }
+}
+
 /// What is uncertain of each unit that slides, should it leave its switching surface: with the other switches
 /// as they are, and as those that are due will be. (A limited integrator comes back where what drives it
 /// turns over.)
@@ -115,11 +132,7 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
   if (!slide_.active() || !slide_.evaluate(t, x)) return doubts;
   for (std::size_t u = 0; u < doubts.size(); ++u) doubts[u] = slide_.doubt(u);
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
-  for (std::size_t s = 0; s < program_.switches().size(); ++s) {
-    const auto due = announced_position(program_.switch_structure(), location_.announced(), s);
-    if (due && !slide_.holds(s) && !slide_.follows(s))
-      workspace_.set_discrete_state(program_.switches()[s].discrete_state, *due);
-  }
+  put_what_is_due();
   const std::span<const double> after = workspace_.discrete_states();
   if (!std::equal(before.begin(), before.end(), after.begin(), after.end())) {
     const bool known = slide_.settle_sides(t, x) && slide_.evaluate(t, x);
@@ -143,7 +156,7 @@ std::optional<EventActions::Effect> Switching::serve_events(double t, std::vecto
   if (!effect) return effect;
   if (hops_ == kManyHops) loop_jumps_.settle(t, x);
   settling_.begin_after_events(effect->events, effect->sets_states, effect->jumps, t, x);
-  event_functions_.evaluate(t, x, location_.announced());
+  let_loops_go(t, x, [&] { event_functions_.evaluate(t, x, location_.announced()); });
   if (effect->jumps) event_functions_.take_slack_since(before);
   location_.withdraw_past(t, effect->jumps);
   return effect;
@@ -178,9 +191,27 @@ void Switching::record_slides(const std::vector<std::uint32_t>& before,
   }
 }
 
+/// Does something for which the loops must have solutions. Where one has none on the side of its own switches
+/// on which it was, as q|q| + q = u where u jumps from 1 to −1, it goes where its elements take it, with what
+/// is due where it will be.
+template <class Action>
+void Switching::let_loops_go(double t, std::span<const double> x, const Action& action) {
+  try {
+    action();
+  } catch (const SolveError& failure) {
+    const bool of_loop =
+        failure.kind() == SolveError::Kind::singular_loop || failure.kind() == SolveError::Kind::chatter;
+    if (!of_loop || !loop_jumps_.any()) throw;
+    put_what_is_due();
+    if (!loop_jumps_.go(t, x)) throw;
+    settling_.begin();
+    action();
+  }
+}
+
 /// All switches, and the loops between them, where nothing has been served yet that follows from them.
 void Switching::settle_switches(double t, std::span<const double> x) {
-  settling_.settle(t, x);
+  let_loops_go(t, x, [&] { settling_.settle(t, x); });
   if (!loop_jumps_.any()) return;
   if (loop_jumps_.settle(t, x)) settling_.settle(t, x);
   loop_jumps_.note(t, x);

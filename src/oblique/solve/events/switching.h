@@ -156,6 +156,9 @@ class Switching {
   std::vector<double> readings(double t, std::span<const double> x);
   bool look_at_hidden(double t, const Interpolant& solution);
   void look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution);
+  void put_what_is_due();
+  template <class Action>
+  void let_loops_go(double t, std::span<const double> x, const Action& action);
   void record_slides(const std::vector<std::uint32_t>& before, const std::vector<SlidingMode::Doubt>& doubts,
                      double t, std::span<const double> x);
   void record_turns(const std::vector<double>& before, double t);
