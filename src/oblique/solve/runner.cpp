@@ -269,12 +269,18 @@ void Runner::pass_piece() {
     options_.progress((t_ - begin_) / (options_.until - begin_));
 }
 
+void Runner::throw_failure(const SolverFailure& failure) {
+  if (!integration_) throw failure;
+  if (sensitivities_)
+    sensitivities_->refuse_growth(failure.time, integration_->sensitivities_at(failure.time));
+  throw run_error(program_, failure, integration_->solver(), workspace_, diagram_.file);
+}
+
 bool Runner::look_ahead() {
   try {
     return look_at_piece();
   } catch (const SolverFailure& failure) {
-    if (!integration_) throw;
-    throw run_error(program_, failure, integration_->solver(), workspace_, diagram_.file);
+    throw_failure(failure);
   }
 }
 
@@ -282,8 +288,7 @@ void Runner::pass() {
   try {
     pass_piece();
   } catch (const SolverFailure& failure) {
-    if (!integration_) throw;
-    throw run_error(program_, failure, integration_->solver(), workspace_, diagram_.file);
+    throw_failure(failure);
   }
 }
 

@@ -76,6 +76,7 @@ class Runner {
   bool take_step();
   bool look_at_piece();
   void pass_piece();
+  [[noreturn]] void throw_failure(const SolverFailure& failure);
   void step_to_end();
   void finish();
 

@@ -317,6 +317,16 @@ out = "atan2(y, x)"
   }
 }
 
+// The solution of x′ = 40 sin x stays within π, and from an unstable rest it stays there; its sensitivity is
+// e^(40 t).
+TEST(Sensitivities, ThatGrowBeyondAllNumbersAreToldSo) {
+  const Compiled made(
+      "s = { type = \"sine\", in = \"x\" }\n"
+      "x = { type = \"integrator\", in = \"40*s\", initial = 0 }\n");
+  EXPECT_THAT(testing::message_of<text::Error>([&] { differentiated(made, {"x.initial"}, 20); }),
+              HasSubstr(": that of 'x' has grown to "));
+}
+
 // Of the shipped diagrams, by their first parameters: central differences of whole runs, which err by about
 // as much as those over half the step differ from them.
 TEST(Sensitivities, AgreeWithDifferencesOfRuns) {

@@ -110,8 +110,13 @@ class DriveReader {
           drive_.speed = law_at(drive_, 0).rate;
           constexpr double kSoonAfter = 1e-6;  // s
           constexpr double kRest = 1e-9;       // of the law's unit: cos(pi/2) is not quite 0
-          if (std::abs(drive_.speed) < kRest * std::abs(drive_.law_scale))
+          if (!std::isfinite(drive_.speed)) {
+            reader_.report("speed", fmt::format("{} has speed {} at t = 0", reader_.what(), drive_.speed),
+                           "a speed that is finite where the motion starts");
+            drive_.speed = 1;
+          } else if (std::abs(drive_.speed) < kRest * std::abs(drive_.law_scale)) {
             drive_.speed = std::copysign(drive_.law_scale, law_at(drive_, kSoonAfter).rate);
+          }
           return;
         }
       } catch (const text::ExpressionError& error) {

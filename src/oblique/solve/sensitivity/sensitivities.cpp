@@ -138,6 +138,17 @@ void Sensitivities::refuse_jump(double t) const {
   refuse(t, "an algebraic loop leaves its branch and jumps to another solution");
 }
 
+void Sensitivities::refuse_growth(double t, const std::vector<std::vector<double>>& s) const {
+  constexpr double kHuge = 1e150;  // its square, which is in their error, is no number any more
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    for (std::size_t i = 0; i < s[k].size(); ++i) {
+      if (std::abs(s[k][i]) <= kHuge) continue;
+      refuse(t, fmt::format("that of '{}' has grown to {:.2g}, as where small disturbances grow without end",
+                            run_states_[i].name, s[k][i]));
+    }
+  }
+}
+
 void Sensitivities::load(const network::Workspace& run) {
   discrete_states_.assign(run.discrete_states().begin(), run.discrete_states().end());
   for (std::size_t u = 0; u < n_unknowns_; ++u) {

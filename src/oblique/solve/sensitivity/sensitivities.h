@@ -62,6 +62,8 @@ class Sensitivities {
   /// What is not followed. Throw SolveError.
   [[noreturn]] void refuse_slide(double t) const;
   [[noreturn]] void refuse_jump(double t) const;
+  /// Throws where the sensitivities s of a run that has failed at t are beyond what numbers hold.
+  void refuse_growth(double t, const std::vector<std::vector<double>>& s) const;
 
  private:
   struct Direction {
