@@ -285,6 +285,21 @@ q = { type = "servo-amplifier", in = ["qq", "-d"], initial = 0.5, gain = "inf", 
   EXPECT_NEAR(after, std::sqrt(0.2), kNewton);
 }
 
+// d jumps from 1/2 to 0.8 by a pulse, which is a memory, and a step, which is none: with either alone the
+// root has no value, or another.
+TEST(LoopJumps, WaitForAllThatComesAtOneInstant) {
+  for (const std::string& blocks :
+       both_orders({R"(p = { type = "pulse-train", delay = 0.55, width = 0.5 })",
+                    R"(u = { type = "step", at = 0.55, from = 0.5, to = -0.2 })",
+                    R"(d = { type = "summer", in = ["p", "u"] })",
+                    R"(q = { type = "square-root", in = "d", gain = "inf", bandwidth = "inf" })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 3});
+    EXPECT_TRUE(result.warnings.empty()) << blocks;
+    EXPECT_NEAR(row_values(result, "q").front(), std::sqrt(0.5), kNewton);
+    EXPECT_NEAR(row_values(result, "q").back(), std::sqrt(0.8), kNewton);
+  }
+}
+
 // q³ − q = d has one solution above 1 and, for d = 0.2, two more: the amplifier starts from 1, whatever comes
 // later.
 TEST(LoopJumps, OfAnAmplifierKnowNothingOfAStepToCome) {

@@ -174,12 +174,18 @@ void EventActions::add_changes(std::size_t event, const network::SignalEvaluatio
   }
 }
 
+bool EventActions::is_any_due() const {
+  for (std::size_t e = 0; e < held_.size(); ++e) {
+    if (event_functions_.here().condition(e) && (!held_[e] || program_.events()[e].repeats)) return true;
+  }
+  return false;
+}
+
 std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<double>& x, bool starting) {
   const std::vector<Come> served = look(t, x, starting);
   if (served.empty()) return std::nullopt;
-  const bool tables = program_.events()[served.front().event].repeats;
-  // A loop may have no solution until the tables before it are moved along.
-  workspace_.pass_failing_loops(tables);
+  // A loop may have no solution until tables are moved along, or memories have changed, that it reads.
+  workspace_.pass_failing_loops(true);
   const auto here = program_.signals(t, x.data(), signals_.data(), workspace_);
   workspace_.pass_failing_loops(false);
   if (!here) throw loop_error(program_, workspace_.trouble(), t, file_);
@@ -206,7 +212,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
   }
   Effect effect;
   effect.events = events;
-  effect.tables = tables;
+  effect.tables = program_.events()[served.front().event].repeats;
   effect.before_start = starting && program_.events()[served.front().event].before_start;
   for (const Change& change : changes) {
     if (change.action->on_state) {
