@@ -300,6 +300,40 @@ TEST(LoopJumps, WaitForAllThatComesAtOneInstant) {
   }
 }
 
+// 1 is divided by 1/2 by repeated subtraction, x and its copy m in stores that track by turns: at x = 1/2 the
+// difference jumps to zero, within a loop that is never closed, and c does not hold.
+TEST(LoopJumps, LeaveNothingHoldingThatIsPutOnItsLevel) {
+  for (const std::string& blocks : both_orders(
+           {R"(a = { type = "pulse-train", period = 0.1, width = 0.03, delay = 0.02 })",
+            R"(b = { type = "pulse-train", period = 0.1, width = 0.03, delay = 0.07 })",
+            R"(y = { type = "constant", value = 0.5 })", R"(c = { type = "comparator", in = ["x", "-y"] })",
+            R"(cy = { type = "multiplier", x = "c", y = "y" })",
+            R"(n = { type = "summer", in = ["x", "-cy"] })",
+            R"(m = { type = "track-and-store", in = "n", track = "a", initial = 1 })",
+            R"(x = { type = "track-and-store", in = "m", track = "b", initial = 1 })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 11});
+    EXPECT_EQ(row_values(result, "x").back(), 0.5) << blocks;
+    EXPECT_EQ(row_values(result, "c").back(), 0) << blocks;
+  }
+}
+
+// q³ − q = d, which nothing integrates, is thrown to its lower branch by a pulse between two rows.
+TEST(LoopJumps, AreMadeAtEventsAlsoWhereNothingNeedsThem) {
+  const Compiled made(R"(u = { type = "sine-source", frequency = 1 }
+c = { type = "comparator", in = ["u", "-0.9*one"] }
+one = { type = "constant" }
+d = { type = "summer", in = ["0.2*one", "-1.2*c"] }
+q2 = { type = "squarer", in = "q" }
+q3 = { type = "multiplier", x = "q2", y = "q" }
+q = { type = "servo-amplifier", in = ["q3", "-q", "-d"], initial = 1, gain = "inf" }
+)");
+  for (const int samples : {3, 6, 101}) {
+    const double q = row_values(run_of(made, {.until = 1, .samples = samples}), "q").back();
+    EXPECT_NEAR(q * q * q - q, 0.2, 1e-9) << samples;
+    EXPECT_LT(q, -0.8) << samples;
+  }
+}
+
 // q³ − q = d has one solution above 1 and, for d = 0.2, two more: the amplifier starts from 1, whatever comes
 // later.
 TEST(LoopJumps, OfAnAmplifierKnowNothingOfAStepToCome) {

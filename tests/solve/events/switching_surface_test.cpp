@@ -277,6 +277,16 @@ TEST(Slide, IsToldOfWhereALevelIsReadAtWhichALimitHoldsSomething) {
   EXPECT_THAT(warnings("1.01"), ::testing::IsEmpty());
 }
 
+// One that just comes to its limit as what drives it turns round is not held there.
+TEST(Slide, IsNotToldOfWhereALimitIsJustTouched) {
+  const Compiled made(R"toml(
+f = { type = "time-function", formula = "cos(time)" }
+x = { type = "integrator", in = "f", limit = 0.9999999999999 }
+)toml");
+  for (const auto method : {diagram::IntegrationMethod::automatic, diagram::IntegrationMethod::rodas})
+    EXPECT_THAT(run_of(made, {.until = 3, .method = method}).warnings, ::testing::IsEmpty());
+}
+
 // c = ±1 by the sign of 0.5 c − x, x = 0.1: it agrees with itself on both sides.
 TEST(Switch, IsToldOfWhereItCouldStartOnItsOtherSide) {
   const std::string rest = "c = { type = \"comparator\", in = \"m\", low = -1, high = 1 }\n";

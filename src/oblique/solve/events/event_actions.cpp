@@ -174,13 +174,6 @@ void EventActions::add_changes(std::size_t event, const network::SignalEvaluatio
   }
 }
 
-bool EventActions::is_any_due() const {
-  for (std::size_t e = 0; e < held_.size(); ++e) {
-    if (event_functions_.here().condition(e) && (!held_[e] || program_.events()[e].repeats)) return true;
-  }
-  return false;
-}
-
 std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<double>& x, bool starting) {
   const std::vector<Come> served = look(t, x, starting);
   if (served.empty()) return std::nullopt;

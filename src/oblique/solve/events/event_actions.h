@@ -36,9 +36,6 @@ class EventActions {
     uncertain_.begin_instant(workspace_.discrete_states());
   }
 
-  /// Whether an event is to come, by the event functions as they were evaluated last.
-  bool is_any_due() const;
-
   /// What events have done at one instant.
   struct Effect {
     bool sets_states = false;

@@ -56,17 +56,24 @@ std::optional<std::uint32_t> idle_on_side(const network::Program& program, netwo
     here->event_function_rates(derivatives.data(), rates.data());
     return rates[members.front()];
   };
-  for (const std::uint32_t s : members)
-    workspace.set_discrete_state(program.switches()[s].discrete_state,
-                                 above != structure.opposite[s] ? 1 : 0);
+  const auto put_on = [&](bool upper) {
+    for (const std::uint32_t s : members)
+      workspace.set_discrete_state(program.switches()[s].discrete_state,
+                                   upper != structure.opposite[s] ? 1 : 0);
+  };
+  put_on(!above);
+  const std::optional<double> other = rate();
+  put_on(above);
   const std::optional<double> resting = rate();
+  const bool is_held = resting && other && differ(*resting, *other);  // and does not just touch its level
   std::optional<std::uint32_t> found;
   for (const std::uint32_t s : members) {
     const network::Switch& made = program.switches()[s];
-    if (found || above == structure.opposite[s] || made.turning != network::Turning::jumps) continue;
+    if (!is_held || found || above == structure.opposite[s] || made.turning != network::Turning::jumps)
+      continue;
     workspace.set_discrete_state(made.discrete_state, 0);
     const std::optional<double> without = rate();
-    if (resting && without && !differ(*resting, *without)) found = s;
+    if (without && !differ(*resting, *without)) found = s;
     workspace.set_discrete_state(made.discrete_state, 1);
   }
   workspace.load_discrete_states(positions);

@@ -193,10 +193,9 @@ void Switching::record_slides(const std::vector<std::uint32_t>& before,
 
 /// Does something for which the loops must have solutions. Where one has none on the side of its own switches
 /// on which it was, as q|q| + q = u where u jumps from 1 to −1, it goes where its elements take it, with what
-/// is due where it will be. False where it has none before the events come that are due: two parts of u may
-/// jump one after the other.
+/// is due where it will be.
 template <class Action>
-bool Switching::let_loops_go(double t, std::span<const double> x, const Action& action) {
+void Switching::let_loops_go(double t, std::span<const double> x, const Action& action) {
   try {
     action();
   } catch (const SolveError& failure) {
@@ -204,20 +203,16 @@ bool Switching::let_loops_go(double t, std::span<const double> x, const Action& 
         failure.kind() == SolveError::Kind::singular_loop || failure.kind() == SolveError::Kind::chatter;
     if (!of_loop || !loop_jumps_.any()) throw;
     put_what_is_due();
-    if (!loop_jumps_.go(t, x)) {
-      event_functions_.evaluate_past_loops(t, x);
-      if (actions_.is_any_due()) return false;
-      throw;
-    }
+    if (!loop_jumps_.go(t, x)) throw;
     settling_.begin();
     action();
   }
-  return true;
 }
 
 /// All switches, and the loops between them, where nothing has been served yet that follows from them.
 void Switching::settle_switches(double t, std::span<const double> x) {
-  if (!let_loops_go(t, x, [&] { settling_.settle(t, x); }) || !loop_jumps_.any()) return;
+  let_loops_go(t, x, [&] { settling_.settle(t, x); });
+  if (!loop_jumps_.any()) return;
   if (loop_jumps_.settle(t, x)) settling_.settle(t, x);
   event_functions_.evaluate(t, x, location_.announced());
 }

@@ -158,7 +158,7 @@ class Switching {
   void look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution);
   void put_what_is_due();
   template <class Action>
-  bool let_loops_go(double t, std::span<const double> x, const Action& action);
+  void let_loops_go(double t, std::span<const double> x, const Action& action);
   void record_slides(const std::vector<std::uint32_t>& before, const std::vector<SlidingMode::Doubt>& doubts,
                      double t, std::span<const double> x);
   void record_turns(const std::vector<double>& before, double t);

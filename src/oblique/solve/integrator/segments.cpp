@@ -48,6 +48,11 @@ void Segments::settle(double t, bool at_branch_end) {
   if (at_branch_end) parts_.branches.pass(t, parts_.states);
   parts_.switching.settle(t, parts_.states);
   follow_phases(t);
+  // A loop that no derivative and no comparison needs leaves its branch here, too, if it must.
+  if (!parts_.program.loops().empty()) {
+    std::vector<double> signals(parts_.program.n_signals());
+    parts_.switching.signals(t, parts_.states.data(), signals.data());
+  }
   parts_.workspace.follow_branches(true);
   parts_.branches.look(t, parts_.states, false,
                        [this](std::size_t loop) { return parts_.switching.mixes(loop); });

@@ -34,11 +34,6 @@ EventFunctions::EventFunctions(const network::Program& program, network::Workspa
       known_rates_(values_.size()) {}
 
 void EventFunctions::evaluate(double t, std::span<const double> x, const Announced& announced) {
-  if (!evaluate_past_loops(t, x) && !is_any_due(announced))
-    throw loop_error(program_, workspace_.trouble(), t, file_);
-}
-
-bool EventFunctions::evaluate_past_loops(double t, std::span<const double> x) {
   interruption_.check();
   time_ = t;
   states_.assign(x.begin(), x.end());
@@ -52,7 +47,7 @@ bool EventFunctions::evaluate_past_loops(double t, std::span<const double> x) {
   }
   thresholds_.update(t, here());
   for (std::size_t s = 0; s < known_rates_.size(); ++s) known_rates_[s] = here().known_rate(s);
-  return known;
+  if (!known && !is_any_due(announced)) throw loop_error(program_, workspace_.trouble(), t, file_);
 }
 
 double EventFunctions::against(std::size_t s) const {

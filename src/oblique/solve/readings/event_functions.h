@@ -35,8 +35,6 @@ class EventFunctions {
   /// Evaluates all at (t, x). Throws SolveError where an algebraic loop has no solution; but it may have one
   /// only where the switches that are due, announced or not, have turned over.
   void evaluate(double t, std::span<const double> x, const Announced& announced);
-  /// The same whatever loops have no solution: false where one has none. It is passed over.
-  bool evaluate_past_loops(double t, std::span<const double> x);
   /// `evaluate` then throws Interrupted.
   void end_when(const Interruption& interruption) { interruption_ = interruption; }
   void know_states(std::span<const double> reach) { errors_.know_states(reach); }

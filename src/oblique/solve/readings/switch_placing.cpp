@@ -33,10 +33,14 @@ bool SwitchPlacing::place(double t, const double* x, network::Workspace& workspa
     bool turned = false;
     for (std::size_t k = 0; k < switches_.size(); ++k) {
       const std::uint32_t s = switches_[k];
-      const double stays = thresholds != nullptr ? (*thresholds)[s] : roundings_.rounding_of(s, sizes[k]);
-      if (std::abs(event_functions_[s]) <= stays) continue;
-      const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-      const double position = event_functions_[s] > 0 ? 1 : 0;
+      const network::Switch& made = program_.switches()[s];
+      const double rounding = roundings_.rounding_of(s, sizes[k]);
+      const bool is_at_level =
+          std::abs(event_functions_[s]) <= rounding && made.turning == network::Turning::jumps;
+      const double stays = thresholds != nullptr ? (*thresholds)[s] : rounding;
+      if (std::abs(event_functions_[s]) <= stays && !is_at_level) continue;
+      const std::uint32_t discrete_state = made.discrete_state;
+      const double position = event_functions_[s] > 0 && !is_at_level ? 1 : 0;
       turned = turned || workspace.discrete_state(discrete_state) != position;
       workspace.set_discrete_state(discrete_state, position);
     }
