@@ -189,6 +189,21 @@ TEST(LoopJumps, OfSignsThatReadEachOtherAreTold) {
   }
 }
 
+// A register of two stores that lies at the level with which it is compared: nothing closes the loop, and at
+// its level the comparison does not hold.
+TEST(LoopJumps, OfARegisterAtItsLevelAreNotTold) {
+  for (const std::string& blocks : both_orders(
+           {R"(a = { type = "pulse-train", period = 0.1, width = 0.03, delay = 0.02 })",
+            R"(b = { type = "pulse-train", period = 0.1, width = 0.03, delay = 0.07 })",
+            R"(h = { type = "constant", value = 0.5 })", R"(c = { type = "comparator", in = ["r", "-h"] })",
+            R"(m = { type = "track-and-store", in = "c", track = "a", initial = 0.5 })",
+            R"(r = { type = "track-and-store", in = "m", track = "b", initial = 0.5 })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 11});
+    EXPECT_TRUE(result.warnings.empty()) << blocks;
+    EXPECT_EQ(row_values(result, "r").back(), 0) << blocks;
+  }
+}
+
 // A pulse at the start sets it: what it would be before that is nobody's choice.
 TEST(LoopJumps, OfALatchThatAPulseSetsAtTheStartAreNotTold) {
   for (const std::string& blocks : both_orders(

@@ -171,9 +171,10 @@ std::optional<std::uint32_t> find_open(const network::Program& program, const ne
     placed[s] = true;
     network::Workspace trial = workspace;
     trial.set_discrete_state(made.discrete_state, 1 - workspace.discrete_state(made.discrete_state));
-    if (place_others(program, trial, thresholds, placed, t, x, event_functions) &&
-        agrees(program, trial, slide, thresholds, span, {}, t, x))
-      return s;
+    if (!place_others(program, trial, thresholds, placed, t, x, event_functions)) continue;
+    const bool is_at_level =
+        std::abs(event_functions[s]) <= thresholds.rounding(s);  // where it does not hold
+    if (!is_at_level && agrees(program, trial, slide, thresholds, span, {}, t, x)) return s;
   }
   return std::nullopt;
 }
