@@ -258,6 +258,23 @@ TEST(Events, ManyThatFollowOneLeaveTheirLimitsTogether) {
   }
 }
 
+// Twenty-four, fed by the sine less a part of their sum, act on each other: too many to be decided
+// together.
+TEST(Events, TooManyThatActOnEachOtherAreRefusedByNumber) {
+  std::string blocks = "s = { type = \"sine-source\", frequency = 0.5 }\n", sum = "\"s\"";
+  constexpr int kMany = 24;
+  for (int k = 0; k < kMany; ++k) {
+    blocks += fmt::format("x{0} = {{ type = \"integrator\", in = \"3*u\", rate = {1}, limit = 1.2 }}\n", k,
+                          1 + 0.1 * k);
+    sum += fmt::format(", \"-0.004*x{}\"", k);
+  }
+  blocks += "u = { type = \"summer\", in = [" + sum + "] }\n";
+  EXPECT_THAT(message_of<SolveError>([&] { run_of(Compiled(blocks), {.until = 2}); }),
+              ::testing::AllOf(
+                  HasSubstr(" other switches that act on each other lie on their switching points at t = "),
+                  HasSubstr(" s; expected at most 10 at one instant")));
+}
+
 // y = sin 9t/cos t changes its sign at every multiple of π/9, and through its pole at π/2, where nothing is
 // known of its size: what comes later is seen as ever.
 TEST(Events, APoleHidesNoLaterCrossing) {

@@ -257,6 +257,19 @@ SolveError EventLog::endless(const std::string& block, const std::string& what, 
        "bandwidth"}};
 }
 
+SolveError EventLog::too_many(const std::string& block, std::size_t count, std::size_t most, double t) const {
+  return {
+      SolveError::Kind::chatter,
+      t,
+      {{file_, {}},
+       fmt::format(
+           "'{}' and {} other switches that act on each other lie on their switching points at t = {:.9g} "
+           "s",
+           block, count - 1, t),
+       fmt::format("at most {} at one instant", most),
+       "let some of them come a little before the others, by other levels or initial values"}};
+}
+
 SolveError EventLog::piled_up(const std::string& block, const std::string& comparison, double at,
                               double t) const {
   return {

@@ -53,6 +53,9 @@ class EventLog {
   /// Withdraws all that: where a run starts, an event has come since.
   void forget_choices();
 
+  /// The error of a run in which this block and others, `count` in all, are at their switching points at one
+  /// instant and act on each other, where only so many can be decided together.
+  SolveError too_many(const std::string& block, std::size_t count, std::size_t most, double t) const;
   /// The error of a run in which this block switches without end.
   SolveError endless(const std::string& block, const std::string& what, double t) const;
   /// The same of what was recorded last.

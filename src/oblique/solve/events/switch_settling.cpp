@@ -262,7 +262,17 @@ void SwitchSettling::decide(const Units& units, double t, std::span<const double
     Units together;
     for (const Units& part : left) together.insert(together.end(), part.begin(), part.end());
     if ((left.size() > 1 && decide_together(together, t, x)) || decide_in_order(together, t, x)) return;
-    throw no_position(members_of(together).front(), t);
+    const std::uint32_t named = members_of(together).front();
+    const auto jumping = std::count_if(together.begin(), together.end(), [&](std::uint32_t unit) {
+      const auto& members = program_.switch_structure().members[unit];
+      return std::any_of(members.begin(), members.end(), [&](std::uint32_t s) {
+        return program_.switches()[s].turning == network::Turning::jumps;
+      });
+    });
+    if (jumping > static_cast<std::ptrdiff_t>(Positions::kMostUnits))
+      throw log_.too_many(program_.switches()[named].block, static_cast<std::size_t>(jumping),
+                          Positions::kMostUnits, t);
+    throw no_position(named, t);
   }
 }
 
