@@ -140,11 +140,11 @@ void Sensitivities::refuse_jump(double t) const {
 
 void Sensitivities::refuse_growth(double t, const std::vector<std::vector<double>>& s) const {
   constexpr double kHuge = 1e150;  // its square, which is in their error, is no number any more
-  for (std::size_t k = 0; k < s.size(); ++k) {
-    for (std::size_t i = 0; i < s[k].size(); ++i) {
-      if (std::abs(s[k][i]) <= kHuge) continue;
+  for (const std::vector<double>& by_one : s) {
+    for (std::size_t i = 0; i < by_one.size(); ++i) {
+      if (std::abs(by_one[i]) <= kHuge) continue;
       refuse(t, fmt::format("that of '{}' has grown to {:.2g}, as where small disturbances grow without end",
-                            run_states_[i].name, s[k][i]));
+                            run_states_[i].name, by_one[i]));
     }
   }
 }
