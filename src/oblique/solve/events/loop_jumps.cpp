@@ -57,11 +57,12 @@ std::vector<std::uint32_t> switches_on(const network::Program& program, std::siz
   const std::vector<bool> follows = structure.followers_of_loop(loop);
   const std::vector<bool> acts = structure.discrete_states_below_loop(loop);
   std::vector<bool> taken(follows.size());
-  std::vector<std::uint32_t> found;
+  std::vector<std::uint32_t> found, left;  // `left`: those behind which others are still to be looked for
   const auto take = [&](std::uint32_t s) {
     if (taken[s] || !follows[s] || program.switches()[s].rate) return;
     taken[s] = true;
     found.push_back(s);
+    left.push_back(s);
   };
   for (std::uint32_t s = 0; s < follows.size(); ++s) {
     const network::Switch& made = program.switches()[s];
@@ -69,8 +70,10 @@ std::vector<std::uint32_t> switches_on(const network::Program& program, std::siz
                               : made.discrete_state])
       take(s);
   }
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    for (const std::uint32_t s : structure.positions_below(found[k])) take(s);
+  while (!left.empty()) {
+    const std::uint32_t last = left.back();
+    left.pop_back();
+    for (const std::uint32_t s : structure.positions_below(last)) take(s);
   }
   std::sort(found.begin(), found.end());
   return found;

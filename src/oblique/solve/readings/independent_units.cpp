@@ -67,6 +67,7 @@ std::vector<std::vector<std::uint32_t>> IndependentUnits::mutual_of(std::span<co
   std::stable_sort(groups.begin(), groups.end(),
                    [](const Group& a, const Group& b) { return a.acting < b.acting; });
   std::vector<std::vector<std::uint32_t>> ordered;
+  ordered.reserve(groups.size());
   for (Group& group : groups) ordered.push_back(std::move(group.units));
   return ordered;
 }
