@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Comparisons of what rests at their level: thyristors that cut off the current which they compare.
+// Comparisons of what comes to their level: of what their own turn brings to rest there, as thyristors that
+// cut off the current which they compare, and of what ends there, is put on it, or taken from it.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -137,6 +139,131 @@ TEST(LevelRest, StopsWhatNeitherOfTwoComparisonsCarriesOn) {
     ASSERT_THAT(run.warnings, SizeIs(1));
     EXPECT_THAT(run.warnings.front().what, HasSubstr(" (in > 0) stops at its level at t = "));
     EXPECT_THAT(run.warnings.front().what, HasSubstr("the least offset lets it go on"));
+  }
+}
+
+// A relay of three positions: z = cos t less its part within ±1/2 is exactly zero while that is, and then
+// neither z > 0 nor −z > 0 holds, from whichever side it came.
+TEST(Level, WhatRestsAtItsLevelIsNotAboveIt) {
+  const Compiled made(R"(
+x = { type = "integrator", in = "-y", initial = 1 }
+y = { type = "integrator", in = "x" }
+z = { type = "dead-zone", in = "x", low = -0.5, high = 0.5 }
+c = { type = "comparator", in = "z" }
+d = { type = "comparator", in = "-z" }
+)");
+  const auto result = run_of(made, {.until = 13});
+  const auto t = row_values(result, "t"), c = row_values(result, "c"), d = row_values(result, "d");
+  EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    EXPECT_EQ(c[k], std::cos(t[k]) > 0.5 ? 1 : 0) << t[k];
+    EXPECT_EQ(d[k], std::cos(t[k]) < -0.5 ? 1 : 0) << t[k];
+  }
+}
+
+// What follows the time alone comes to its level and rests there, or turns back from it. (Comparisons and
+// their counters are exact.)
+TEST(Level, WhatEndsOrTurnsBackAtItsLevelDoesNotHold) {
+  for (const char* signal :
+       {R"(r = { type = "ramp", start = 0, stop = 0.3 }
+level = { type = "constant", value = 0.3 })",
+        R"(r = { type = "limiter", in = "u", low = -0.3, high = 0.3 }
+u = { type = "ramp", slope = 0.37 }
+level = { type = "constant", value = 0.3 })",
+        R"toml(r = { type = "time-function", formula = "min(time, 1)" }
+level = { type = "constant", value = 1 })toml",
+        R"(r = { type = "recording", data = [[0, 0], [1, 1], [2, 1], [3, 0]] }
+level = { type = "constant", value = 1 })",
+        R"(r = { type = "recording", data = [[0, 0], [0.7, 1], [1.4, 0], [2, 1], [3, 0]] }
+level = { type = "constant", value = 1 })"}) {
+    const Compiled made(std::string(signal) + R"(
+c = { type = "comparator", in = ["r", "-level"] }
+n = { type = "counter", clock = "c" }
+x = { type = "integrator", in = "c" })");
+    const auto result = run_of(made, {.until = 3});
+    EXPECT_EQ(row_values(result, "n.out").back(), 0) << signal;
+    EXPECT_EQ(row_values(result, "x").back(), 0) << signal;
+  }
+}
+
+// A step and a counter of it are equal from then on; a product with a step to 0 is zero, and a sum of two
+// that are: also where a ramp is part of it, which has its times known.
+TEST(Level, WhatJumpsToItsLevelDoesNotHold) {
+  for (const char* signal : {R"(u = { type = "step", at = 1 }
+k = { type = "counter", clock = "u" }
+d = { type = "summer", in = ["u", "-k.out"] })",
+                             R"(v = { type = "step", at = 1 }
+r = { type = "ramp", slope = -0.3, start = 0, stop = 1 }
+d = { type = "summer", in = ["r", "0.3*v"] })",
+                             R"(u = { type = "step", at = 1, from = -1, to = 0 }
+r = { type = "ramp" }
+d = { type = "multiplier", x = "u", y = "r" })",
+                             R"(u = { type = "step", at = 1, from = 1, to = 0 }
+s = { type = "ramp", start = 5 }
+d = { type = "summer", in = ["-u", "s"] })"}) {
+    const Compiled made(std::string(signal) + R"(
+c = { type = "comparator", in = "d" }
+e = { type = "comparator", in = "-d" }
+x = { type = "integrator", in = ["c"] }
+y = { type = "integrator", in = ["e"] })");
+    const auto result = run_of(made, {.until = 3});
+    EXPECT_EQ(row_values(result, "c").back(), 0) << signal;
+    EXPECT_EQ(row_values(result, "e").back(), 0) << signal;
+    // None of them holds but before 1.
+    EXPECT_LE(row_values(result, "x").back() + row_values(result, "y").back(), 1 + 1e-12) << signal;
+  }
+}
+
+// t − 1/2 comes to zero as a step takes 0.3 from it, so that it is above zero from 0.8 on; whatever turns
+// over there, or bends, is not led astray.
+TEST(Level, WhatIsTakenBackAsItComesToItsLevelDoesNotTurn) {
+  const Compiled made(R"(
+r = { type = "ramp" }
+p = { type = "step", at = 0.5 }
+h = { type = "constant", value = 0.5 }
+v = { type = "summer", in = ["r", "-0.3*p", "-h"] }
+c = { type = "comparator", in = "v" }
+n = { type = "counter", clock = "c" }
+x = { type = "integrator", in = "c" }
+m = { type = "absolute-value", in = "v" }
+d = { type = "maximum", x = "v", y = "0*h" }
+)");
+  const auto result = run_of(made, {.until = 1});
+  const auto t = row_values(result, "t"), v = row_values(result, "v"), m = row_values(result, "m"),
+             d = row_values(result, "d");
+  EXPECT_EQ(row_values(result, "n.out").back(), 1);
+  EXPECT_NEAR(row_values(result, "x").back(), 0.2, 1e-12);  // rounding
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    EXPECT_NEAR(v[row], t[row] - 0.5 - (t[row] > 0.5 ? 0.3 : 0), 1e-15) << t[row];
+    EXPECT_EQ(m[row], std::abs(v[row])) << t[row];
+    EXPECT_EQ(d[row], std::max(v[row], 0.0)) << t[row];
+  }
+}
+
+// The first pulse comes where the run starts: 0.3 − 3 · 0.1, which is 6e-17 below zero in doubles, does not
+// hold, as it does not in the second one.
+TEST(Level, WhatJumpsToItsLevelWhereTheRunStartsDoesNotHold) {
+  const Compiled made(R"(
+s = { type = "pulse-train", period = 0.5, width = 0.25, high = 0.1 }
+l = { type = "constant", value = 0.3 }
+c = { type = "comparator", in = ["l", "-3*s"] }
+x = { type = "integrator", in = "c" }
+)");
+  EXPECT_NEAR(row_values(run_of(made, {.until = 0.75}), "x").back(), 0.25, 1e-12);  // rounding
+}
+
+// A counting converter stops at the step that is equal to what it converts, on whichever side of it rounding
+// puts the sum of the steps.
+TEST(Level, ACounterStopsWhereItIsEqual) {
+  for (int steps = 1; steps <= 20; ++steps) {
+    const Compiled made(fmt::format(R"(
+v = {{ type = "constant", value = {} }}
+clock = {{ type = "pulse-train", period = 0.1, width = 0.05, delay = 0.1 }}
+above = {{ type = "comparator", in = ["v", "-k.out"] }}
+gate = {{ type = "multiplier", x = "clock", y = "above" }}
+k = {{ type = "counter", clock = "gate", step = 0.05 }})",
+                                    0.05 * steps));
+    EXPECT_NEAR(row_values(run_of(made, {.until = 3}), "k.out").back(), 0.05 * steps, 1e-15) << steps;
   }
 }
 
