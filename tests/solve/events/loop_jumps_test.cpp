@@ -315,6 +315,22 @@ TEST(LoopJumps, WaitForAllThatComesAtOneInstant) {
   }
 }
 
+// d goes from 0.1 to −0.1 by a step of −1.2 and a pulse of 1 at one instant: q³ − q = d keeps to its upper
+// branch, which d = −1.1 alone would end.
+TEST(LoopJumps, KeepToABranchThatOnlyAPartOfAnInstantWouldEnd) {
+  for (
+      const std::string& blocks : both_orders(
+          {R"(p = { type = "pulse-train", delay = 0.55, width = 0.5 })",
+           R"(u = { type = "step", at = 0.55, from = 0.1, to = -1.1 })",
+           R"(d = { type = "summer", in = ["p", "u"] })", R"(q2 = { type = "squarer", in = "q" })",
+           R"(q3 = { type = "multiplier", x = "q2", y = "q" })",
+           R"(q = { type = "servo-amplifier", in = ["q3", "-q", "-d"], initial = 1, gain = "inf", limit = 3 })"})) {
+    const auto q = row_values(run_of(Compiled(blocks), {.until = 1, .samples = 3}), "q");
+    EXPECT_NEAR(q.back() * q.back() * q.back() - q.back(), -0.1, kNewton) << blocks;
+    EXPECT_GT(q.back(), 0.9) << blocks;
+  }
+}
+
 // 1 is divided by 1/2 by repeated subtraction, x and its copy m in stores that track by turns: at x = 1/2 the
 // difference jumps to zero, within a loop that is never closed, and c does not hold.
 TEST(LoopJumps, LeaveNothingHoldingThatIsPutOnItsLevel) {
