@@ -27,10 +27,10 @@ StartOutcome at(double y) {
 /// All points at which a start of the loop itself is tried, where none but the guess has a solution.
 std::set<double> points_tried() {
   std::set<double> points;
-  const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
-    if (!from.loop) return at(0);
+  const auto start = [&](const LoopStart& from) -> StartAttempt {
+    if (!from.loop) return {at(0)};
     points.insert(from.unknowns.at(0));
-    return std::nullopt;
+    return {};
   };
   EXPECT_TRUE(choose_start(blind_loop(), 0, "d.toml", start).warnings.empty());
   return points;
@@ -46,9 +46,9 @@ TEST(OtherSolutions, AreSoughtFromAsManyPointsAsIsSaid) {
 
 TEST(OtherSolutions, AreToldWhicheverPointFindsOne) {
   for (const double point : points_tried()) {
-    const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
-      if (!from.loop) return at(0.25);
-      return from.unknowns.at(0) == point ? std::optional(at(-0.75)) : std::nullopt;
+    const auto start = [&](const LoopStart& from) -> StartAttempt {
+      if (!from.loop) return {at(0.25)};
+      return from.unknowns.at(0) == point ? StartAttempt{at(-0.75)} : StartAttempt{};
     };
     const StartChoice choice = choose_start(blind_loop(), 2, "d.toml", start);
     EXPECT_FALSE(choice.from.loop);
@@ -62,22 +62,35 @@ TEST(OtherSolutions, AreToldWhicheverPointFindsOne) {
 
 TEST(OtherSolutions, AreNotTheSameOneNorBeyondTheReach) {
   for (const double other : {0.25, 0.25 + 1e-6, 3.5}) {
-    const auto start = [&](const LoopStart& from) { return std::optional(at(from.loop ? other : 0.25)); };
+    const auto start = [&](const LoopStart& from) { return StartAttempt{at(from.loop ? other : 0.25)}; };
     EXPECT_TRUE(choose_start(blind_loop(), 0, "d.toml", start).warnings.empty()) << other;
+  }
+}
+
+// A start in which loops fail all the way may take a second; refusals are not to take a minute.
+TEST(OtherSolutions, AreSoughtFromFewerPointsWhereStartsTakeVeryManyEvaluations) {
+  for (const bool found : {true, false}) {
+    int starts = 0;
+    const auto start = [&](const LoopStart& from) -> StartAttempt {
+      ++starts;
+      return found && !from.loop ? StartAttempt{at(0.25), 100'000} : StartAttempt{{}, 100'000};
+    };
+    choose_start(blind_loop(), 0, "d.toml", start);
+    EXPECT_EQ(starts, 3) << found;  // 300 000 for each loop
   }
 }
 
 // Where the guesses lead to none, the first point that leads to one is what the run is to start from.
 TEST(OtherSolutions, GiveTheStartWhereTheGuessesGiveNone) {
   for (const double point : points_tried()) {
-    const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
-      return from.loop && from.unknowns.at(0) == point ? std::optional(at(1)) : std::nullopt;
+    const auto start = [&](const LoopStart& from) -> StartAttempt {
+      return from.loop && from.unknowns.at(0) == point ? StartAttempt{at(1)} : StartAttempt{};
     };
     const StartChoice choice = choose_start(blind_loop(), 0, "d.toml", start);
     EXPECT_TRUE(choice.warnings.empty());
     EXPECT_EQ(choice.from.unknowns, std::vector<double>{point});
   }
-  const auto none = [](const LoopStart&) -> std::optional<StartOutcome> { return std::nullopt; };
+  const auto none = [](const LoopStart&) -> StartAttempt { return {}; };
   EXPECT_FALSE(choose_start(blind_loop(), 0, "d.toml", none).from.loop);
 }
 

@@ -347,25 +347,21 @@ Run run_once(const network::Program& program, const diagram::FlatDiagram& diagra
   }
 }
 
-StartOutcome start_once(const network::Program& program, const diagram::FlatDiagram& diagram,
-                        const RunOptions& options, const LoopStart& loop_start) {
-  const Refinement refinement;
-  try {
-    return Runner(program, diagram, options, loop_start, refinement, false).outcome_of_start();
-  } catch (const Interrupted&) {
-    throw interrupted_start(diagram, options);
-  }
-}
-
 StartChoice start_of(const network::Program& program, const diagram::FlatDiagram& diagram,
                      const RunOptions& options) {
   if (options.from) return {};
-  const auto start = [&](const LoopStart& from) -> std::optional<StartOutcome> {
+  const Refinement refinement;
+  const auto start = [&](const LoopStart& from) {
+    Runner runner(program, diagram, options, from, refinement, false);
+    StartAttempt attempt;
     try {
-      return start_once(program, diagram, options, from);
-    } catch (const SolveError&) {
-      return std::nullopt;
+      attempt.outcome = runner.outcome_of_start();
+    } catch (const SolveError&) {  // there is none from here
+    } catch (const Interrupted&) {
+      throw interrupted_start(diagram, options);
     }
+    attempt.loop_evaluations = runner.loop_evaluations();
+    return attempt;
   };
   return choose_start(program, 0, diagram.file, start);
 }

@@ -57,6 +57,8 @@ class Runner {
 
   /// Only what the start leads to.
   StartOutcome outcome_of_start();
+  /// How often it has evaluated the equations of loops.
+  std::size_t loop_evaluations() const { return workspace_.loop_evaluations(); }
 
   /// After the run, also one that failed: the steps that it took.
   std::int64_t steps() const { return steps_; }
@@ -126,9 +128,5 @@ struct Observed {
 Run run_once(const network::Program& program, const diagram::FlatDiagram& diagram, const RunOptions& options,
              const LoopStart& loop_start, const Refinement& refinement, bool may_end_unseen,
              Observed& observed);
-
-/// What the start of such a run leads to. Throws SolveError.
-StartOutcome start_once(const network::Program& program, const diagram::FlatDiagram& diagram,
-                        const RunOptions& options, const LoopStart& loop_start);
 
 }  // namespace oblique::solve

@@ -85,6 +85,12 @@ LoopWorkspace::LoopWorkspace(std::size_t size)
       between_(eigen_index(size)),
       held_(size) {}
 
+/// Runs the equations on the unknowns that the slots hold.
+void LoopWorkspace::evaluate(std::span<const Instruction> body, double* slots) {
+  run_tape(body, slots);
+  ++evaluations_;
+}
+
 void LoopWorkspace::reset() {
   solved_ = false;
   branch_ = 0;
@@ -123,7 +129,7 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
   if (loop.linear) return solve_linear(loop, body, slots);
   const int how = 4 * branch_ + 2 * (solved_ ? 1 : 0) + (following_ ? 1 : 0);
   if (failed_.repeats(loop, slots, how)) {
-    run_tape(body, slots);
+    evaluate(body, slots);
     return failure_;
   }
   failure_ = loop.has_branches() ? solve_branched(loop, body, slots) : solve_unbranched(loop, body, slots);
@@ -149,7 +155,8 @@ LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<cons
     search = newton(loop, body, slots);
   }
   solved_ = search.failure == LoopFailure::none;
-  if (!solved_ && find_near_root(loop, body, slots, origin_[0])) return LoopFailure::none;
+  if (!solved_ && find_near_root(loop, slots, origin_[0], [&] { evaluate(body, slots); }))
+    return LoopFailure::none;
   if (!solved_ || !known || search.even_order) return search.failure;
   const bool is_near = longest_change(loop, slots) < kLongWay;
   if (matrix_.determinant_sign() == search.first_sign &&
@@ -160,7 +167,7 @@ LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<cons
   const Search shorter = newton(loop, body, slots, Steps::parts);
   if (shorter.failure != LoopFailure::none || matrix_.determinant_sign() != shorter.first_sign) {
     write(loop, slots, target_);
-    run_tape(body, slots);
+    evaluate(body, slots);
   }
   return LoopFailure::none;
 }
@@ -172,7 +179,7 @@ bool LoopWorkspace::solves(const LoopCode& loop, std::span<const Instruction> bo
       1e-7;                            // of the terms of an equation: what is told where a derivative is lost
   constexpr double kRounding = 1e-13;  // [machine unit] of terms without unknowns that take each other away
   for (std::size_t i = 0; i < loop.size(); ++i) slots[loop.unknown_slots[i]] = unknowns[i];
-  run_tape(body, slots);
+  evaluate(body, slots);
   if (held_whatever_) return true;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const double residual = slots[loop.residual_slots[i]];
@@ -194,7 +201,7 @@ LoopFailure LoopWorkspace::solve_linear(const LoopCode& loop, std::span<const In
                                         double* slots) {
   read(loop, slots, origin_);
   for (const std::uint32_t slot : loop.unknown_slots) slots[slot] = 0;  // the step rounds as its start does
-  run_tape(body, slots);
+  evaluate(body, slots);
   for (const std::uint32_t slot : loop.residual_slots) {
     if (!std::isfinite(slots[slot])) return LoopFailure::not_finite;
   }
@@ -214,7 +221,7 @@ LoopFailure LoopWorkspace::solve_linear(const LoopCode& loop, std::span<const In
   if (matrix_.residual_norm(loop, slots) == 0) return LoopFailure::none;
   matrix_.solve(step_);
   move(loop, slots, 1);
-  run_tape(body, slots);
+  evaluate(body, slots);
   return step_.allFinite() ? LoopFailure::none : LoopFailure::not_finite;
 }
 
@@ -224,7 +231,7 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
   constexpr double kShort = 0.01;  // of |z|: a step that is not looked at for poles, and taken whole
   constexpr double kPart = 0.25;
   Search search;
-  run_tape(body, slots);
+  evaluate(body, slots);
   double last_change = std::numeric_limits<double>::infinity();
   bool small = false;
   int halvings = 0;
@@ -256,7 +263,7 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
       fraction = kPart;
       change = move(loop, slots, fraction);
     }
-    run_tape(body, slots);
+    evaluate(body, slots);
     // Steps at the level of rounding are not judged by the residual, which is noise there.
     const auto leaps = [&] {
       if (steps == Steps::any || !(change > kShort)) return false;
@@ -270,11 +277,11 @@ LoopWorkspace::Search LoopWorkspace::newton(const LoopCode& loop, std::span<cons
       if (fraction < kSmallestFraction) {
         if (!small) return ended(LoopFailure::diverged);
         move(loop, slots, 0);
-        run_tape(body, slots);
+        evaluate(body, slots);
         return search;
       }
       change = move(loop, slots, fraction);
-      run_tape(body, slots);
+      evaluate(body, slots);
     }
     halvings = change > 0.4 * last_change && change < 0.6 * last_change ? halvings + 1 : 0;
     search.even_order = halvings > kFewestHalvings;
@@ -324,7 +331,7 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
       return is_on_branch(search) ? LoopFailure::none : LoopFailure::lost;
     }
     write(loop, slots, target_);
-    run_tape(body, slots);
+    evaluate(body, slots);
     if (search.failure == LoopFailure::singular && rests() && solved_) return LoopFailure::none;
   }
   if (following_ && solved_) return LoopFailure::lost;
@@ -334,11 +341,11 @@ LoopFailure LoopWorkspace::solve_branched(const LoopCode& loop, std::span<const 
   // A run that begins at a root that rests at zero, as one goes on from a state that was kept there.
   if (origin_[0] != 0 || !is_root_of_nothing(loop, body, slots, 0)) return search.failure;
   slots[loop.unknown_slots[0]] = kBesideNothing;
-  run_tape(body, slots);
+  evaluate(body, slots);
   if (!matrix_.factor(loop, slots)) return search.failure;
   accept();
   slots[loop.unknown_slots[0]] = 0;
-  run_tape(body, slots);
+  evaluate(body, slots);
   return LoopFailure::none;
 }
 
@@ -372,11 +379,11 @@ bool LoopWorkspace::keeps_sign(const LoopCode& loop, std::span<const Instruction
   for (int place = 1; place <= kPlaces && keeps; ++place) {
     between_ = from + (end_ - from) * std::fmod(place * kGolden, 1);
     write(loop, slots, between_);
-    run_tape(body, slots);
+    evaluate(body, slots);
     keeps = beside_.factor(loop, slots) && beside_.determinant_sign() == sign;
   }
   write(loop, slots, end_);
-  run_tape(body, slots);
+  evaluate(body, slots);
   return keeps;
 }
 
@@ -399,7 +406,7 @@ bool LoopWorkspace::relax(const LoopCode& loop, std::span<const Instruction> bod
     return std::all_of(loop.residual_slots.begin(), loop.residual_slots.end(),
                        [&](std::uint32_t slot) { return std::isfinite(slots[slot]); });
   };
-  run_tape(body, slots);
+  evaluate(body, slots);
   if (!finite()) return false;
   // Where a branch ends, derivatives are near zero, and say nothing about how fast the amplifiers move later.
   const auto natural_step = [&] {
@@ -432,12 +439,12 @@ bool LoopWorkspace::relax(const LoopCode& loop, std::span<const Instruction> bod
     }
     if (good) {
       write(loop, slots, start_);
-      run_tape(body, slots);
+      evaluate(body, slots);
       good = finite();
     }
     if (!good) {
       write(loop, slots, target_);
-      run_tape(body, slots);
+      evaluate(body, slots);
       h /= 4;
       continue;
     }

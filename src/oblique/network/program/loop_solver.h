@@ -39,6 +39,9 @@ class LoopWorkspace {
   /// been run on it.
   LoopFailure solve_loop(const LoopCode& loop, std::span<const Instruction> tape, double* slots);
 
+  /// How often its equations have been evaluated so far.
+  std::size_t evaluations() const { return evaluations_; }
+
   /// While a branch is followed, `lost` is told where it ends, and the amplifiers do not leave it.
   void follow_branch(bool follow) { following_ = follow; }
 
@@ -60,6 +63,7 @@ class LoopWorkspace {
     bool even_order = false;  ///< each step was half the one before it: the root has no derivative
     int first_sign = 0;       ///< of the determinant of dg/dz where it began
   };
+  void evaluate(std::span<const Instruction> body, double* slots);
   Search newton(const LoopCode& loop, std::span<const Instruction> body, double* slots,
                 Steps steps = Steps::any);
   LoopFailure solve_unbranched(const LoopCode& loop, std::span<const Instruction> body, double* slots);
@@ -86,6 +90,7 @@ class LoopWorkspace {
   Eigen::VectorXd origin_, target_;          ///< where a search began and ended
   Eigen::VectorXd end_, between_;            ///< of `keeps_sign`
 
+  std::size_t evaluations_ = 0;
   bool following_ = false;
   bool solved_ = false;  ///< a solution is known, and was no singular one
   int branch_ = 0;       ///< sign of the determinant of dg/dz on it

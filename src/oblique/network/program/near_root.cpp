@@ -12,9 +12,9 @@ struct Point {
   double residual, slope;
 };
 
-Point point_at(const LoopCode& loop, std::span<const Instruction> body, double* slots, double z) {
+Point point_at(const LoopCode& loop, double* slots, double z, const std::function<void()>& evaluate) {
   slots[loop.unknown_slots[0]] = z;
-  run_tape(body, slots);
+  evaluate();
   Point point{slots[loop.residual_slots[0]], 0};
   for (const MatrixEntry& entry : loop.jacobian) point.slope += slots[entry.slot];
   return point;
@@ -22,17 +22,18 @@ Point point_at(const LoopCode& loop, std::span<const Instruction> body, double* 
 
 }  // namespace
 
-bool find_near_root(const LoopCode& loop, std::span<const Instruction> body, double* slots, double origin) {
+bool find_near_root(const LoopCode& loop, double* slots, double origin,
+                    const std::function<void()>& evaluate) {
   constexpr double kFirstReach = 1e-16;  // of 1 + |origin|
   constexpr int kReaches = 50;           // each twice the one before: to a tenth
   constexpr double kContinuous = 1e-6;   // of the residual at the origin: what may be left of it at a root
   constexpr int kMostHalvings = 1100;    // from the largest number to the smallest
   if (loop.size() != 1) return false;
-  const Point here = point_at(loop, body, slots, origin);
+  const Point here = point_at(loop, slots, origin, evaluate);
   if (!std::isfinite(here.residual)) return false;
   // A root, a fold, or the edge of where there are values, lies between.
   const auto is_beyond = [&](double z) {
-    const Point there = point_at(loop, body, slots, z);
+    const Point there = point_at(loop, slots, z, evaluate);
     return !(there.residual * here.residual > 0 && there.slope * here.slope > 0);
   };
 
@@ -57,7 +58,7 @@ bool find_near_root(const LoopCode& loop, std::span<const Instruction> body, dou
         if (middle == side.inner || middle == outer) break;
         (is_beyond(middle) ? outer : side.inner) = middle;
       }
-      const double there = point_at(loop, body, slots, outer).residual;
+      const double there = point_at(loop, slots, outer, evaluate).residual;
       if (there * here.residual <= 0 && std::abs(there) <= kContinuous * std::abs(here.residual)) return true;
     }
   }

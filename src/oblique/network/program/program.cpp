@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <oblique/network/program/parameter_setting.h>
 #include <oblique/network/program/program_compiler.h>
@@ -235,6 +236,11 @@ void Workspace::set_unknown(std::size_t u, double value) {
   ++generation_;
   solved_[u] = value;
   slots_[1 + program_->n_states() + u] = value;
+}
+
+std::size_t Workspace::loop_evaluations() const {
+  return std::accumulate(loops_.begin(), loops_.end(), std::size_t{0},
+                         [](std::size_t sum, const LoopWorkspace& loop) { return sum + loop.evaluations(); });
 }
 
 void Workspace::follow_branches(bool follow) {

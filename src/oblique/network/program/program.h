@@ -150,6 +150,8 @@ class Workspace {
     double value = 0;       ///< of its first unknown where it was solved last, or its guess
   };
   const Trouble& trouble() const { return trouble_; }
+  /// How often the equations of loops have been evaluated so far, of all together.
+  std::size_t loop_evaluations() const;
 
   /// While branches are followed, a loop of which amplifiers choose the solution fails (`lost`) where its
   /// branch ends or is left; else the amplifiers go to where they rest.

@@ -21,6 +21,7 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
   constexpr long kMostRoundsInCircle = 10'000;  // each may bring them nearer by a thousandth only
   constexpr long kRoundsToJudge = 100;          // of which a thousandth each leaves nine tenths
   constexpr double kNearer = 0.95;
+  constexpr double kRunsAway = 1e6;  // times as far as at first
   const long starts = std::count_if(program.states().begin(), program.states().end(),
                                     [](const network::State& state) { return state.start_node.has_value(); });
   std::vector<double> signals(program.n_signals());
@@ -30,7 +31,7 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
   std::vector<double> unknowns;
   for (std::size_t u = 0; u < program.unknowns().size(); ++u) unknowns.push_back(workspace.unknown(u));
   bool changes = true, finite = true, there = false, moved = false, nearer = true;
-  double change = 0, judged = std::numeric_limits<double>::infinity();
+  double change = 0, first_change = 0, judged = std::numeric_limits<double>::infinity();
   for (long round = 0; changes && finite && nearer && round <= starts + kMostRoundsInCircle; ++round) {
     workspace.pass_failing_loops(!there);
     const auto here = program.signals(t, x.data(), signals.data(), workspace);
@@ -59,10 +60,12 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
       x[i] = *value;
     }
     moved = moved || changes;
+    if (round <= starts) first_change = 1 + change;
     if (round > starts && round % kRoundsToJudge == 0) {
       nearer = change < kNearer * judged;
       judged = change;
     }
+    nearer = nearer && change < kRunsAway * first_change;
     if (changes || std::exchange(there, true)) continue;
     for (std::size_t u = 0; moved && u < unknowns.size(); ++u) workspace.set_unknown(u, unknowns[u]);
     changes = true;  // as the next rounds may show, in which every loop is to have its solution

@@ -19,6 +19,9 @@ namespace {
 constexpr int kPoints = 24;
 constexpr double kReach = 3;  // [machine unit]
 
+/// After so many for each loop, which take some tenths of a second, no other points are tried.
+constexpr std::size_t kMostEvaluations = 300'000;
+
 LoopStart point(const network::Program& program, std::size_t loop, int k) {
   const std::size_t n = program.loops()[loop].unknowns.size();
   LoopStart start{loop, text::even_point(k, n)};
@@ -66,24 +69,31 @@ text::Diagnostic several_solutions(const network::Program& program, std::size_t 
 }  // namespace
 
 StartChoice choose_start(const network::Program& program, double t, const std::string& file,
-                         const std::function<std::optional<StartOutcome>(const LoopStart&)>& start) {
+                         const std::function<StartAttempt(const LoopStart&)>& start) {
   StartChoice choice;
   std::vector<std::size_t> blind;
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
     if (may_have_several(program, loop)) blind.push_back(loop);
   }
   if (blind.empty()) return choice;
-  std::optional<StartOutcome> solution = start({});
+  const std::size_t most_evaluations = kMostEvaluations * program.loops().size();
+  std::size_t evaluations = 0;
+  const auto outcome = [&](const LoopStart& from) {
+    StartAttempt attempt = start(from);
+    evaluations += attempt.loop_evaluations;
+    return std::move(attempt.outcome);
+  };
+  std::optional<StartOutcome> solution = outcome({});
   for (const std::size_t loop : blind) {
-    for (int k = 1; k <= kPoints && !solution; ++k) {
+    for (int k = 1; k <= kPoints && !solution && evaluations < most_evaluations; ++k) {
       choice.from = point(program, loop, k);
-      solution = start(choice.from);
+      solution = outcome(choice.from);
     }
   }
   if (!solution) return {};
   for (const std::size_t loop : blind) {
-    for (int k = 1; k <= kPoints; ++k) {
-      const auto other = start(point(program, loop, k));
+    for (int k = 1; k <= kPoints && evaluations < most_evaluations; ++k) {
+      const auto other = outcome(point(program, loop, k));
       if (!other || leaves_reach(program, loop, other->signals)) continue;
       const auto unknown = changed(program, loop, solution->unknowns, other->unknowns);
       if (!unknown) continue;

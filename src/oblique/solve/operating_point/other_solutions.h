@@ -23,6 +23,13 @@ struct StartOutcome {
   std::vector<double> unknowns, signals;  ///< of the whole program
 };
 
+/// One start: what it leads to, nothing where it fails, and how often the equations of loops were evaluated
+/// for it.
+struct StartAttempt {
+  std::optional<StartOutcome> outcome;
+  std::size_t loop_evaluations = 0;
+};
+
 /// From where the loops of a run are to start, and what else might have been.
 struct StartChoice {
   LoopStart from;
@@ -32,13 +39,14 @@ struct StartChoice {
 /// A warning for each loop of elements without memory that has another solution where the run starts, at time
 /// t. Nothing in such a loop says which one is meant: a servo amplifier has its `initial`, and an equation of
 /// a block its guess, so loops with these are left out. Sought from points that fill the machine's range
-/// evenly; a solution that lies in no reach of them is not seen.
+/// evenly; a solution that lies in no reach of them is not seen. Where starts take very many evaluations, as
+/// where loops have no solution on the way, fewer points are tried.
 ///
 /// `start` makes a whole start of its own, with all switches settled and all amplifiers at rest, and gives
 /// the unknowns of the program as it leaves them; nothing where it fails. So only what the whole diagram
 /// agrees with is a solution, and a loop counts whose choice decides where amplifiers come to rest. Where the
 /// guesses lead to no start the first point that does is chosen.
 StartChoice choose_start(const network::Program& program, double t, const std::string& file,
-                         const std::function<std::optional<StartOutcome>(const LoopStart&)>& start);
+                         const std::function<StartAttempt(const LoopStart&)>& start);
 
 }  // namespace oblique::solve
