@@ -225,6 +225,24 @@ x = { type = "integrator", in = ["one"] }
             Verdict::no_feedback);
 }
 
+// What acts on itself with a pole at zero: Lyapunov's critical case, alone and beside a mode that decays
+// (Khalil, Nonlinear Systems: both rests are unstable, x grows as x³), and the sum of what two tanks hold.
+TEST(Verdict, OfAPoleAtZeroThatIsNoIntegratorsIsUndamped) {
+  for (const char* blocks : {R"toml(x = { type = "integrator", in = ["x3"] }
+x2 = { type = "squarer", in = "x" }
+x3 = { type = "multiplier", in = ["x", "x2"] }
+)toml",
+                             R"toml(x = { type = "integrator", in = ["xy"] }
+y = { type = "integrator", in = ["-y", "x2"] }
+xy = { type = "multiplier", in = ["x", "y"] }
+x2 = { type = "squarer", in = "x" }
+)toml",
+                             R"toml(a = { type = "integrator", in = ["-a", "b"], initial = 1 }
+b = { type = "integrator", in = ["a", "-b"] }
+)toml"})
+    EXPECT_EQ(analysis_of(Compiled(blocks), 1).stability.verdict, Verdict::undamped) << blocks;
+}
+
 // x″ = −q, where an amplifier finds q from 2 q = 2 x. The oscillator stays the problem's, and a mode that the
 // amplifier's delay of 8 ns moves by 4e-9 of its frequency stays undamped.
 TEST(Verdict, OfAnOscillatorThatAFastAmplifierServesIsUndamped) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/solve/stability/disturbance_growth.h>
 
+#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -52,6 +53,42 @@ out = 0
     // over the second half; the trapezoids of a bell as wide as four rows are exact to 1e-6
     EXPECT_NEAR(growth->late_growth(), 10 * (1 - (0.6 + 0.01 * std::numbers::egamma)), 1e-4);
   }
+}
+
+// δx′ = −δx + 10 δy + 0 · t, δy′ = −δy − 0.01 δx: e^(−1) times a rotation by √0.1 with the axes 10 and 0.1 of
+// its ellipse, [cos, √1000 sin; −sin/√1000, cos], of which the largest singular value is √((a + √(a² −
+// 4))/2), a the sum of the squares of its elements (its determinant is 1).
+TEST(DisturbanceGrowth, IsThatOfTheLargestDisturbanceItself) {
+  diagram::BlockLibrary library = testing::shipped_blocks_and("first", R"toml(
+[inputs]
+in = {}
+[outputs]
+out = {}
+[equations]
+"der(out)" = "-out + 10*in + 1e-12*time*out"
+[start]
+out = 0
+)toml");
+  library.add(diagram::parse_block(R"toml(format = "oblique-block/1"
+title = "second"
+[inputs]
+in = {}
+[outputs]
+out = {}
+[equations]
+"der(out)" = "-out - 0.01*in"
+[start]
+out = 0
+)toml",
+                                   "second.toml", "second"));
+  const Compiled made("x = { type = \"first\", in = \"y\" }\ny = { type = \"second\", in = \"x\" }\n", "",
+                      library);
+  const auto growth = disturbance_growth(made.program, rows_of(made, 401));
+  ASSERT_TRUE(growth);
+  const double angle = std::sqrt(0.1), c = std::cos(angle), s = std::sin(angle);
+  const double a = 2 * c * c + 1000 * s * s + s * s / 1000;
+  EXPECT_NEAR(growth->factor, std::exp(-1) * std::sqrt((a + std::sqrt(a * a - 4)) / 2),
+              1e-9);  // rounding, 1e-12 t
 }
 
 // A ring of n states, each x′ = t x and a little of its neighbour.

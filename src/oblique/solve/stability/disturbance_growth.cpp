@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/SVD>
 #include <unsupported/Eigen/MatrixFunctions>
 
 namespace oblique::solve {
@@ -15,9 +16,10 @@ constexpr std::size_t kMostStates = 60;
 constexpr double kMostWork = 2e9;  ///< operations: rows times n³ times about 30
 constexpr double kGreatestLogarithm = 700;
 
-/// ln‖Φ‖ of δ′ = A(t) δ at the middle and at the end.
+/// ln‖Φ‖ of δ′ = A(t) δ at the middle and at the end: in variables that are scaled against each other, which
+/// tells rates best, and, at the end, of the largest δ itself (the spectral norm).
 struct Logarithms {
-  double middle = 0, end = 0;
+  double middle = 0, end = 0, largest = 0;
 };
 
 /// From every `stride`-th of the matrices, which are equally far apart: by three of them and Magnus' series
@@ -51,13 +53,15 @@ Logarithms grow(const std::vector<double>& times, const std::vector<Eigen::Matri
     }
     solution = Eigen::MatrixXd(step.exp()) * solution;
     const double norm = solution.norm();
-    if (!std::isfinite(norm)) return {std::numeric_limits<double>::quiet_NaN(), 0};
-    if (norm == 0) return {-kGreatestLogarithm, -kGreatestLogarithm};
+    if (!std::isfinite(norm)) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    if (norm == 0) return {-kGreatestLogarithm, -kGreatestLogarithm, -kGreatestLogarithm};
     solution /= norm;
     logarithm += std::log(norm);
     if (times[to] <= middle_time) result.middle = logarithm;
     from = to;
   }
+  const Eigen::MatrixXd unscaled = scale.asDiagonal() * solution * scale.cwiseInverse().asDiagonal();
+  result.largest = logarithm + std::log(Eigen::JacobiSVD<Eigen::MatrixXd>(unscaled).singularValues()[0]);
   result.end = logarithm - std::log(std::sqrt(static_cast<double>(n)));
   result.middle -= std::log(std::sqrt(static_cast<double>(n)));
   return result;
@@ -102,19 +106,21 @@ std::optional<DisturbanceGrowth> disturbance_growth(const network::Program& prog
     }
   }
   if (times.size() < kFewest) return std::nullopt;
-  Logarithms most{-kGreatestLogarithm, -kGreatestLogarithm};
+  Logarithms most{-kGreatestLogarithm, -kGreatestLogarithm, -kGreatestLogarithm};
+  double largest = -kGreatestLogarithm;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (!varies[g]) continue;
     const Logarithms fine = grow(times, matrices[g], 1), coarse = grow(times, matrices[g], 2);
     const double late = fine.end - fine.middle, coarse_late = coarse.end - coarse.middle;
     constexpr double kAgree = 0.2;
     if (!(std::abs(late - coarse_late) <= kAgree * std::max(1.0, std::abs(late)))) return std::nullopt;
+    largest = std::max(largest, fine.largest);
     if (fine.end - fine.middle > most.end - most.middle || most.end <= -kGreatestLogarithm) most = fine;
   }
   DisturbanceGrowth growth;
   growth.from = times.front();
   growth.to = times.back();
-  growth.factor = std::exp(std::min(most.end, kGreatestLogarithm));
+  growth.factor = std::exp(std::min(largest, kGreatestLogarithm));
   growth.exponent = (most.end - most.middle) / ((growth.to - growth.from) / 2);
   return growth;
 }

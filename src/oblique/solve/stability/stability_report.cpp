@@ -66,6 +66,7 @@ class Judge {
     bool seen = false, has_modes = false;
     bool machine = false;  ///< has states that an ideal machine has not
     bool varies = false, proven = false;
+    bool neutral = true;      ///< a pole was zero whenever it was looked at
     bool grows_now = false;   ///< a mode of the problem, when it was last looked at
     std::size_t growing = 0;  ///< eigenvalues right of the axis then
   };
@@ -139,9 +140,10 @@ class Judge {
     std::vector<std::optional<Complex>> ideal(modes.size());
     if (group.machine) ideal = ideal_->problem_modes(group.states, modes);
     bool servo_grows = false;
-    std::size_t growing = 0;
+    std::size_t growing = 0, poles = 0;
     group.grows_now = false;
     for (std::size_t m = 0; m < modes.size(); ++m) {
+      poles += modes[m].pole.imag() > 0 ? 2U : 1U;
       const bool servo = group.machine && !ideal[m];
       const WorstMode worst{modes[m], t, group.machine ? ideal[m] : std::nullopt};
       const bool grows = verdict_on(worst) == ModeVerdict::grows;
@@ -152,6 +154,7 @@ class Judge {
     }
     group.has_modes = group.has_modes || !modes.empty();
     group.growing = growing;
+    group.neutral = group.neutral && !large && poles < group.states.size();
     if (!group.servos.empty()) find_margins(group, t, servo_grows);
   }
 
@@ -224,7 +227,18 @@ class Judge {
     }
   }
 
-  StabilityVerdict verdict() const {
+  /// Whether states of the group act on each other or on themselves beside where the run was at its end. One
+  /// of its poles, at zero, is then not that of an integrator which nothing reaches: it belongs to a quantity
+  /// that is conserved, or to a state that acts on itself though its slopes all vanish where it rests.
+  bool has_feedback(const Group& group) {
+    constexpr double kBeside = 0.01;  // [machine unit]
+    Instant beside = instants_.back();
+    for (const std::size_t i : group.states) beside.states[i] += kBeside;
+    const auto linear = Linearisation::at(program_, workspace_, beside);
+    return linear && linear->sparse_block(group.states).norm() > 0;
+  }
+
+  StabilityVerdict verdict() {
     using Verdict = StabilityVerdict;
     if (report_.instants == 0 && program_.n_states() > 0) return Verdict::not_told;
     if (report_.grows_from) return Verdict::servos_unstable;
@@ -235,6 +249,9 @@ class Judge {
       return always && !(growth && growth->does_not_grow()) ? Verdict::grows : Verdict::grows_at_times;
     }
     if (growth && !growth->does_not_grow()) return Verdict::not_told;
+    if (std::any_of(groups_.begin(), groups_.end(),
+                    [&](const Group& group) { return group.seen && group.neutral && has_feedback(group); }))
+      return Verdict::undamped;
     if (!report_.rightmost) {
       const bool large = std::any_of(groups_.begin(), groups_.end(), [](const Group& group) {
         return group.states.size() > kMostReported && !group.has_modes;
