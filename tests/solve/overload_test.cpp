@@ -121,6 +121,26 @@ TEST(Overload, HaltsTheRunAtItsTime) {
   EXPECT_EQ(result.trajectory.rows(), 1U);  // rows at 0, 5 and 10: one before the overload
 }
 
+// The state is that of the halt, also where a loop reads it: x = 0.1 + t/2, and q + q³ = 2x, of which q
+// leaves at 1.
+TEST(Overload, HaltsTheRunInTheStateOfItsTime) {
+  const Compiled made(R"toml(one = { type = "constant", value = 0.5 }
+x = { type = "integrator", in = ["one"], initial = 0.1 }
+b = { type = "gain", in = "x", factor = 0.25 }
+qq = { type = "squarer", in = "q" }
+q3 = { type = "multiplier", x = "q", y = "qq" }
+q = { type = "summer", in = ["-q3", "2*x"] }
+)toml");
+  const auto result = watched(made, 4, true);
+  ASSERT_TRUE(result.halted);
+  EXPECT_NEAR(result.state.time, 1.8, 1e-9);
+  ASSERT_EQ(result.state.states.size(), 1U);
+  EXPECT_NEAR(result.state.states[0].second, 1, 1e-9);
+  ASSERT_EQ(result.state.unknowns.size(), 1U);
+  const double z = result.state.unknowns[0].second;  // one of the loop's elements: q = 1, qq = 1 or q3 = 1
+  EXPECT_NEAR(z, 1, 1e-8);
+}
+
 TEST(Overload, WithoutStatesIsFoundBetweenRows) {
   const Compiled made("a = { type = \"constant\", value = 1.5 }\n");
   const auto result = watched(made, 2);

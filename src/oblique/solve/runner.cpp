@@ -255,6 +255,14 @@ void Runner::pass_piece() {
     sensitivities_->after_event(t_, states_, workspace_);
   }
   piece_begin_ = t_;
+  if (segments_.halted()) {  // within a step, at whose end the solver is
+    std::vector<double> signals;
+    in_step_ = true;
+    go_to(t_, signals);
+    in_step_ = false;
+    ++steps_;
+    return;
+  }
   in_step_ = passed == Segments::Passed::piece;
   if (in_step_ && integration_) integration_->go_on(t_);
   if (in_step_) return;
