@@ -145,6 +145,31 @@ until = 20
   }
 }
 
+// x starts from y, and z from x: all three come to 0.8 at once in each initial condition, whatever the order
+// of the rows; x, from −0.2 a second, is at no time near zero, and nothing counts.
+TEST(Timeline, InitialValuesInAChainAreTakenAtOnce) {
+  const std::string one = "one = { type = \"constant\" }\n";
+  const std::string y = "y = { type = \"integrator\", in = [\"-one\"], initial = 0.8 }\n";
+  const std::string x = "x = { type = \"integrator\", in = [\"-0.2*one\"], start = \"y\" }\n";
+  const std::string z = "z = { type = \"integrator\", in = [\"one\"], start = \"x\" }\n";
+  const std::string count =
+      "c = { type = \"comparator\", in = [\"x\"] }\nk = { type = \"counter\", clock = \"c\" }\n";
+  for (const std::string& rows : {one + y + x + z + count, count + z + x + y + one}) {
+    const Compiled made(
+        rows,
+        "[timeline]\nphases = [{ mode = \"operate\", for = 1 }, { mode = \"initial\", for = 0.5, "
+        "until = \"x < 0.7\" }]\ncycles = 4\n");
+    const auto result = run_of(made, {.until = 6, .samples = 600});
+    const auto t = row_values(result, "t"), at_x = row_values(result, "x"), at_z = row_values(result, "z");
+    for (std::size_t r = 0; r < t.size(); ++r) {
+      const double since = std::fmod(t[r], 1.5);
+      EXPECT_NEAR(at_x[r], since < 1 ? 0.8 - 0.2 * since : 0.8, 1e-12) << t[r];  // lines, to rounding
+      EXPECT_NEAR(at_z[r], since < 1 ? 0.8 + since : 0.8, 1e-12) << t[r];
+    }
+    EXPECT_EQ(row_values(result, "k.out").back(), 0);
+  }
+}
+
 TEST(Timeline, GroupsHaveModesOfTheirOwn) {
   const diagram::BlockLibrary library = library_with_modes();
   const Compiled made(R"(one = { type = "constant" }

@@ -259,6 +259,7 @@ ExitStatus run_diagram(const Session& session, const RunRequest& request) {
   options.watch_overloads = diagram.machine.profile != "ideal";
   if (!request.from.empty()) {
     options.from = solve::parse_run_state(text::read_file(request.from), request.from);
+    options.from->turned = true;  // by --set, or in the file
     if (!(options.until > options.from->time)) {
       throw text::ReadError(
           text::Diagnostic{{request.from, {}},

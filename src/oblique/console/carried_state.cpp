@@ -77,6 +77,7 @@ solve::RunState carried_state(const solve::RunState& state, const network::Progr
   carried.memories = taken(to.discrete_states(), discrete, renamed,
                            [&](std::size_t i) { return fresh.discrete_states()[i]; });
   carried.sliding.clear();
+  carried.turned = true;
   carried.conditions = conditions_by_block(state, from, to, renamed);
   return carried;
 }

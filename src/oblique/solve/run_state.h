@@ -28,6 +28,9 @@ struct RunState {
   /// where that is not known.
   std::vector<bool> sliding;
   PhasePosition position;
+  /// Pots may have been turned since: what the mode of a group has put somewhere is put there anew. (Not in
+  /// the file.)
+  bool turned = false;
 };
 
 /// The text of a state file (oblique-state/1); `parse_run_state` gives the same numbers back.

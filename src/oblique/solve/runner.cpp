@@ -172,7 +172,10 @@ StartOutcome Runner::outcome_of_start() {
 }
 
 void Runner::resume(const RunState& state) {
-  RunSnapshot(state).restore(parts());
+  RunState from = state;
+  for (std::size_t e = 0; from.turned && e < from.conditions.size(); ++e)
+    from.conditions[e] = from.conditions[e] && !program_.events()[e].of_mode;
+  RunSnapshot(from).restore(parts());
   switching_.resume(begin_, states_);
 }
 

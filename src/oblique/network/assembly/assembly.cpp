@@ -125,6 +125,13 @@ bool Assembly::is_constant(std::size_t block, const text::Expression& expression
 }
 
 std::optional<double> Assembly::constant_value(std::size_t block, const text::Expression& expression) {
+  // A condition of two never holds where one of them never does.
+  if (expression.kind == text::Expression::Kind::logical_and) {
+    for (const text::Expression& condition : expression.operands) {
+      const auto value = constant_value(block, condition);
+      if (value && *value == 0) return 0;
+    }
+  }
   if (!is_constant(block, expression)) return std::nullopt;
   return network.graph.frozen_value(built_operand(block, expression));
 }

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <oblique/network/assembly/mode_assembly.h>
+
 namespace oblique::network {
 namespace {
 
@@ -71,6 +73,7 @@ void make_events(Assembly& a) {
     event.block = a.diagram.blocks[block].path;
     event.at_start = rule->at_start;
     event.before_start = rule->before_start;
+    event.of_mode = rule->when.kind == text::Expression::Kind::name && mode_node(a, block, rule->when.name);
     event.condition = a.built(block, rule->when, rule->place, "an event's 'when'");
     event.actions = actions_of(a, block, rule->actions);
     if (!rule->piling_up.empty()) {

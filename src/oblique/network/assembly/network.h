@@ -71,7 +71,8 @@ struct Event {
   bool repeats = false;       ///< comes again for as long as the condition holds
   std::vector<Action> actions;
   std::optional<std::size_t> piling_up =
-      std::nullopt;  ///< the event that takes its place where it comes ever faster
+      std::nullopt;      ///< the event that takes its place where it comes ever faster
+  bool of_mode = false;  ///< the condition is that its group is in a mode
 };
 
 /// A quantity that is defined by an equation: residual = 0.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -174,6 +175,29 @@ void EventActions::add_changes(std::size_t event, const network::SignalEvaluatio
   }
 }
 
+/// What a mode puts to initial values may start from others that it puts there at the same instant: these are
+/// taken again from the signals as they then are, one after the other.
+void EventActions::put_in_chain(const std::vector<std::size_t>& events, double t, std::vector<double>& x) {
+  const auto of_mode = [&](std::size_t event) { return program_.events()[event].of_mode; };
+  std::vector<std::size_t> chain;
+  std::copy_if(events.begin(), events.end(), std::back_inserter(chain), of_mode);
+  bool changes = chain.size() > 1;
+  for (std::size_t round = 0; changes && round < chain.size(); ++round) {
+    workspace_.pass_failing_loops(true);
+    const auto here = program_.signals(t, x.data(), signals_.data(), workspace_);
+    workspace_.pass_failing_loops(false);
+    if (!here) return;
+    std::vector<Change> put;
+    for (const std::size_t event : chain) add_changes(event, *here, t, put);
+    changes = false;
+    for (const Change& change : put) {
+      if (!change.action->on_state || x[change.action->index] == change.value) continue;
+      x[change.action->index] = change.value;
+      changes = true;
+    }
+  }
+}
+
 std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<double>& x, bool starting) {
   const std::vector<Come> served = look(t, x, starting);
   if (served.empty()) return std::nullopt;
@@ -207,15 +231,17 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
   effect.events = events;
   effect.tables = program_.events()[served.front().event].repeats;
   effect.before_start = starting && program_.events()[served.front().event].before_start;
+  const std::vector<double> before = x;
   for (const Change& change : changes) {
     if (change.action->on_state) {
       effect.sets_states = true;
-      effect.jumps = effect.jumps || x[change.action->index] != change.value;
       x[change.action->index] = change.value;
     } else {
       workspace_.set_discrete_state(change.action->index, change.value);
     }
   }
+  put_in_chain(events, t, x);
+  effect.jumps = x != before;
   jumped_ = jumped_ || effect.jumps;
   return effect;
 }

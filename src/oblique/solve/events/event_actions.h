@@ -73,6 +73,7 @@ class EventActions {
   void look_for_lost(std::size_t event, double t);
   void add_changes(std::size_t event, const network::SignalEvaluation& here, double t,
                    std::vector<Change>& changes) const;
+  void put_in_chain(const std::vector<std::size_t>& events, double t, std::vector<double>& x);
 
   const network::Program& program_;
   network::Workspace& workspace_;
