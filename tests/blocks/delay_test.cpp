@@ -67,11 +67,11 @@ TEST_P(PadeDelay, PassesAConstantFromTheStart) {
 }
 
 TEST(DelayLine, HandsOnItsSamples) {
-  // Five stores, a sample each 0.1 s: between the pulses stands the one that was taken five pulses before.
+  // Five stores, a sample each 0.1 s: about a pulse stands the one that was taken five pulses before.
   const Compiled made(R"(u = { type = "sine-source", frequency = 0.3 }
 out = { type = "delay-line", in = "u", delay = 0.5, stages = 5, initial = -0.25 })");
   expect_form(run_of(made, {.until = 3.97, .samples = 334}), "out", kRounding, [](double t) {
-    const double sampled = 0.1 * (std::floor(t / 0.1 + 1e-9) - 5);
+    const double sampled = 0.1 * (std::floor(t / 0.1 + 0.5 + 1e-9) - 5);
     return sampled < -1e-9 ? -0.25 : std::sin(2 * std::numbers::pi * 0.3 * sampled);
   });
 }
@@ -100,7 +100,33 @@ one = { type = "delay-line", in = "u", delay = 0.75, stages = 1 })");
   const auto result = run_of(made, {.until = 2.93, .samples = 334});
   expect_form(result, "out", kRounding, [](double t) { return std::max(0.0, t - 0.75); });
   expect_form(result, "one", kRounding,
-              [](double t) { return 0.75 * std::max(0.0, std::floor(t / 0.75 + 1e-9) - 1); });
+              [](double t) { return 0.75 * std::max(0.0, std::floor(t / 0.75 + 0.5 + 1e-9) - 1); });
+}
+
+// A step within a clock time comes out the whole delay after the pulse that has taken it, less half a one, of
+// one line of twenty stores and of a row of two and of four; and an echo comes again each second (it did
+// each 1.1 s).
+TEST(DelayLine, InARowDelaysByAllItsStores) {
+  const Compiled made(R"(u = { type = "step", at = 0.57 }
+one = { type = "delay-line", in = "u", delay = 2, stages = 20 }
+a = { type = "delay-line", in = "u", delay = 1, stages = 10 }
+b = { type = "delay-line", in = "a", delay = 1, stages = 10 }
+c = { type = "delay-line", in = "b", delay = 1, stages = 10 }
+d = { type = "delay-line", in = "c", delay = 1, stages = 10 }
+p = { type = "pulse-train", delay = 0.53, width = 0.34, period = 100 }
+x = { type = "summer", in = ["p", "0.5*e"] }
+e = { type = "delay-line", in = "x", delay = 1, stages = 10 }
+)");
+  const auto result = run_of(made, {.until = 5.997, .samples = 998});  // no row at an edge
+  const auto step_at = [](double when) { return [=](double t) { return t > when ? 1.0 : 0.0; }; };
+  expect_form(result, "one", kRounding, step_at(2.55));
+  expect_form(result, "b", kRounding, step_at(2.55));
+  expect_form(result, "d", kRounding, step_at(4.55));
+  expect_form(result, "e", kRounding, [](double t) {
+    const double since = t - 0.55;  // taken at 0.6, 0.7 and 0.8 s
+    const double echo = std::floor(since);
+    return echo >= 1 && since - echo < 0.3 ? std::pow(0.5, echo - 1) : 0.0;
+  });
 }
 
 }  // namespace

@@ -134,6 +134,58 @@ TEST(Console, TurnsAPotWhileItRuns) {
   EXPECT_NEAR(console.value("x"), std::exp(-1.5), 1e-8);
 }
 
+// From 1 in initial condition, whose pot is turned there: e^(−t)/2 from then on.
+TEST(Console, TakesAnInitialValueThatIsTurnedInInitialCondition) {
+  Console console = console_of(kDecay);
+  console.set_mode(OperatingMode::initial);
+  console.advance(1);
+  console.turn("x.initial", "0.5");
+  EXPECT_EQ(console.value("x"), 0.5);
+  console.advance(2);
+  console.set_mode(OperatingMode::operate);
+  console.turn("x.initial", "0.7");
+  EXPECT_EQ(console.value("x"), 0.5) << "in operation it does not go there";
+  console.advance(3);
+  EXPECT_NEAR(console.value("x"), 0.5 * std::exp(-1), 1e-8);
+}
+
+// A clock that is turned goes on from its last pulse: one at 10 s, then each 2 s (at 12 s), or each half a
+// second.
+TEST(Console, TurnsAClockWhileItRuns) {
+  const auto counted = [](const char* period, double until) {
+    Console console = console_of(
+        "p = { type = \"pulse-train\", period = 1, width = 0.2 }\n"
+        "n = { type = \"counter\", clock = \"p\" }\n");
+    console.advance(10.1);
+    console.turn("p.period", period);
+    console.advance(until);
+    return console.value("n.out");
+  };
+  EXPECT_EQ(counted("2", 11.9), 11);
+  EXPECT_EQ(counted("2", 12.1), 12);
+  EXPECT_EQ(counted("2", 20.1), 16);
+  EXPECT_EQ(counted("0.5", 10.45), 11);
+  EXPECT_EQ(counted("0.5", 10.55), 12);
+  EXPECT_EQ(counted("0.5", 20.1), 31);
+}
+
+// A line of the time itself, at 10 s or between two pulses: its samples go on at the new pace, until it is
+// the new delay late.
+TEST(Console, TurnsADelayWhileItRuns) {
+  for (const double when : {10.0, 10.03}) {
+    for (const double delay : {0.5, 2.0}) {
+      Console console = console_of(
+          "u = { type = \"ramp\" }\n"
+          "d = { type = \"delay-line\", in = \"u\", delay = 1, stages = 10, straight = 1 }\n");
+      console.advance(when);
+      EXPECT_NEAR(console.value("d"), when - 1, 1e-9);
+      console.turn("d.delay", std::to_string(delay));
+      console.advance(when + delay + 0.2);
+      EXPECT_NEAR(console.value("d"), when + 0.2, 1e-9) << when << " " << delay;
+    }
+  }
+}
+
 // A finite gain makes the amplifier a state, an infinite one an element of a loop: c = μ/(1 + μ) b either
 // way.
 TEST(Console, CarriesAnAmplifierFromOneCaseToTheOther) {

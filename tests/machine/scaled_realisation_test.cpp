@@ -200,7 +200,7 @@ y = { type = "summer", in = ["y_of.out", "3*y_of.setting"] })"},
         ElementCase{"noise",
                     R"(y = { type = "noise-source", rms = 3, bandwidth = 0.8, mean = -1, seed = 7 })"},
         ElementCase{"delay_line",
-                    R"(y = { type = "delay-line", in = "3*v", delay = 0.7, stages = 7, initial = -3 })"},
+                    R"(y = { type = "delay-line", in = "3*v", delay = 0.71, stages = 7, initial = -3 })"},
         ElementCase{"straight_delay_line",
                     R"(y = { type = "delay-line", in = "0.3*u", delay = 0.7, stages = 12, straight = 1 })"},
         // 200 lines over a turn: (∫√|cos| dx)²/(16·200²) = 3.6e-5 over four quarters, times r = 2

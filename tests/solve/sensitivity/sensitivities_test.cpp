@@ -193,17 +193,17 @@ TEST(Sensitivities, OfWhatAnEventSets) {
 }
 
 // A delay line takes its first sample, and sets when the next one is to come, where the run starts: the k-th
-// of t comes at k D/5, and leaves after D more. (Not in the rows in which it comes, at which it jumps.)
+// of t comes at k D/5, and leaves after D more, less half a step of the clock. (No row lies where it jumps.)
 TEST(Sensitivities, OfWhatAnEventSetsAtTheStart) {
   const Compiled made(
       "one = { type = \"constant\" }\nx = { type = \"integrator\", in = \"one\" }\n"
-      "y = { type = \"delay-line\", in = \"x\", delay = 0.52, stages = 5 }\n");
+      "y = { type = \"delay-line\", in = \"x\", delay = 0.526, stages = 5 }\n");
   const auto run = differentiated(made, {"y.delay"});
-  const double stage = 0.52 / 5;
+  const double stage = 0.526 / 5;
   expect_column(run, "y", kTolerance,
-                [&](double t) { return std::max(0.0, std::floor(t / stage) - 5) * stage; });
+                [&](double t) { return std::max(0.0, std::floor(t / stage + 0.5) - 5) * stage; });
   expect_column(run, "d(y)/d(y.delay)", kTolerance,
-                [&](double t) { return std::max(0.0, std::floor(t / stage) - 5) / 5; });
+                [&](double t) { return std::max(0.0, std::floor(t / stage + 0.5) - 5) / 5; });
 }
 
 // With a later pulse x would begin later, and with an earlier one its begin would lie before the run.
@@ -214,7 +214,7 @@ TEST(Sensitivities, OfAStateThatAnEventStoresAtTheStart) {
       "y = { type = \"delay-line\", in = \"x\", delay = 0.52, stages = 1, straight = 0 }\n");
   const auto run = differentiated(made, {"x.initial"}, 1);
   expect_column(run, "d(y)/d(x.initial)", kTolerance, [&](double t) {
-    return t < 0.52 ? 0 : 1;  // 0.52 is in no row
+    return t < 0.26 ? 0 : t < 0.78 ? 1 : std::exp(-0.52);  // in the middle between pulses; in no row
   });
 }
 
@@ -249,10 +249,9 @@ TEST(Sensitivities, RefuseWhatTurnsOverJustAtTheStart) {
   const Compiled made(
       "p = { type = \"pulse-train\", period = 1, width = 0.3 }\n"
       "x = { type = \"transfer-lag\", in = \"p\", time_constant = 0.5 }\n");
-  EXPECT_THAT(
-      refusal(made, "p.delay"),
-      HasSubstr("'delay + n*period > time' of block 'p' lies at its switching point where the run starts, "
-                "and with another parameter it would not"));
+  EXPECT_THAT(refusal(made, "p.delay"), HasSubstr("'if(first < 0, delay, first + n*length) > time' of block "
+                                                  "'p' lies at its switching point where the run starts, "
+                                                  "and with another parameter it would not"));
   EXPECT_EQ(refusal(made, "p.width"), "");
 }
 
