@@ -25,15 +25,21 @@ Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diag
                const RunOptions& options, const LoopStart& loop_start) {
   constexpr int kMostTries = 5;
   constexpr std::int64_t kMostTimesFirst = 100, kAlwaysAllowed = 100'000;  // steps of a finer run
+  // For a comparison that lies within errors alone a finer run takes some times as many steps, or it is one of what
+  // rests on its level, and no run is fine enough.
+  constexpr std::int64_t kMostTimesForFaint = 30, kAlwaysAllowedForFaint = 2'000;
   Refinement refinement;
   RunOptions finer = options;
+  bool failed = false;  // the last try
   for (int k = 0; k < kMostTries; ++k) {
     if (k > 0 && options.on_restart) options.on_restart();
     Observed observed;
     Run result;
+    failed = false;
     try {
       result = run_once(program, diagram, finer, loop_start, refinement, true, observed);
     } catch (const SolveError&) {  // what was not seen may be why
+      failed = true;
       if (observed.unseen.empty() && k == 0) throw;
       if (observed.unseen.empty()) break;
     }
@@ -43,11 +49,16 @@ Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diag
         result.warnings.push_back(std::move(warning));
       return result;
     }
-    if (k == 0)
-      finer.max_steps = std::min(options.max_steps, kMostTimesFirst * observed.steps + kAlwaysAllowed);
+    if (k == 0) {
+      const std::int64_t most = observed.unseen.is_faint_alone()
+                                    ? kMostTimesForFaint * observed.steps + kAlwaysAllowedForFaint
+                                    : kMostTimesFirst * observed.steps + kAlwaysAllowed;
+      finer.max_steps = std::min(options.max_steps, most);
+    }
     const Refinement before = refinement;
     refine(observed.unseen, program.n_states(), refinement);
     if (refinement == before) break;
+    failed = false;
   }
   const auto run_to_the_end = [&](const Refinement& how, const RunOptions& with) {
     if (options.on_restart) options.on_restart();
@@ -58,7 +69,7 @@ Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diag
     return result;
   };
   try {
-    return run_to_the_end(refinement, finer);
+    return failed ? run_to_the_end({}, options) : run_to_the_end(refinement, finer);
   } catch (const SolveError&) {  // finer than it can be run
     return run_to_the_end({}, options);
   }

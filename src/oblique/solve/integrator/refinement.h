@@ -23,6 +23,7 @@ struct Unseen {
                                   ///< output no digit
 
   bool empty() const { return growth.empty() && small.empty() && faint.empty() && lost.empty(); }
+  bool is_faint_alone() const { return growth.empty() && small.empty() && lost.empty(); }
 };
 
 /// Where a run is to be finer than its tolerance asks, because states that matter are smaller.

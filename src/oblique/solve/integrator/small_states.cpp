@@ -30,7 +30,7 @@ constexpr double kSmallUnit = 1e-4, kStaysZero = 1e-13;
 
 constexpr std::size_t kMostStates = 100;  ///< looked at one by one
 constexpr double kRounding = 1e-15, kAboveRounding = 10;
-constexpr double kErrorOfSteps = 10;  ///< of the relative tolerance: what the steps together leave to a state
+constexpr double kErrorOfSteps = 10;  ///< of a tolerance: what the steps together leave to a state
 
 }  // namespace
 
@@ -77,13 +77,16 @@ void SmallStates::look(double t, std::span<const double> x) {
 
   std::vector<double> rates(x.size()), rates_off(x.size());
   const bool known = system_.derivatives(t, x.data(), rates.data());
-  const auto let_all_err_by = [&](double part, std::vector<double>& left) {
-    for (std::size_t i = 0; i < x.size(); ++i) off_states_[i] = x[i] * (1 + (i % 2 == 0 ? part : -part));
+  const auto let_all_err_by = [&](double part, std::vector<double>& left, double part_of_held = 0) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double error = part * x[i] + (held_[i] ? part_of_held * tolerance_of(i) : 0);
+      off_states_[i] = x[i] + (i % 2 == 0 ? error : -error);
+    }
     if (!known || !system_.derivatives(t, off_states_.data(), rates_off.data())) return;
     for (const std::size_t i : small) left[i] = std::max(left[i], span_ * std::abs(rates_off[i] - rates[i]));
   };
   let_all_err_by(kRounding, noise_);
-  let_all_err_by(kErrorOfSteps * settings_.relative_tolerance, left_by_others_);
+  let_all_err_by(kErrorOfSteps * settings_.relative_tolerance, left_by_others_, kErrorOfSteps);
 
   for (const std::size_t i : small) {
     std::vector<double> off(x.size(), 0.0);
@@ -128,11 +131,14 @@ void SmallStates::read(double t, std::span<const double> x, std::size_t state,
 std::optional<std::size_t> SmallStates::reader_of(std::size_t state) const {
   const auto moves = moves_.find(state);
   if (moves == moves_.end()) return std::nullopt;
+  const bool any_held = std::find(held_.begin(), held_.end(), true) != held_.end();
   for (std::size_t k = 0; k < sizes_.size(); ++k) {
     // An output that shows nothing larger is looked at beside its own size: but for what a slide may hold at
     // zero, and for what the errors of larger states leave where they cancel.
     const bool shows_small = !held_[state] && sizes_[k] > kStaysZero && sizes_[k] < kSmallUnit &&
                              peaks_[state] > left_by_others_[state];
+    // Where something slides, others rest beside their switching surfaces by what rounding leaves of it.
+    if (k >= n_relative_ && sizes_[k] < kStaysZero && any_held) continue;
     const double much = k >= n_relative_ ? kMuchOfEventFunction * sizes_[k]
                         : shows_small    ? kMuchOfSmallOutput * tolerance_ * sizes_[k]
                                          : kMuch * tolerance_ * std::max(1.0, sizes_[k]);

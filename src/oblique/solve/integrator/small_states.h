@@ -60,7 +60,7 @@ class SmallStates {
   Readings readings_;
   std::size_t n_relative_;
   std::vector<double> peaks_, noise_;   ///< of the states: largest magnitude, and what rounding makes of them
-  std::vector<double> left_by_others_;  ///< what the relative errors of all states make of them
+  std::vector<double> left_by_others_;  ///< what the errors of larger states and of those held make of them
   std::vector<double> sizes_;           ///< of the readings
   std::vector<double> values_, moved_, off_states_;
   std::vector<bool> held_;  ///< of each state: whether a slide may have held it at zero
