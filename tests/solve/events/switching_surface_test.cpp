@@ -353,5 +353,32 @@ q = { type = "integrator", in = "y" }
   for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(x_beside[k], x[k], 1e-6) << times[k];
 }
 
+// An amplifier at its limit, to either side, and a lag behind it by BDF: it stands at ±0.5 to the last bit,
+// where Newton's method led by its own derivative of −6e5 1/s once left it beside by 3e-7, in 130 000 steps
+// of nanoseconds.
+TEST(Slide, OfAnAmplifierAtItsLimitStands) {
+  const Compiled made(R"toml(
+w = { type = "sine-source", frequency = 0.3, amplitude = 0.6 }
+u = { type = "servo-amplifier", in = ["-2*w", "0.1*u"], gain = 1e4, bandwidth = 100, limit = 0.5 }
+x = { type = "integrator", in = ["u", "-2*x"], initial = 0.3 }
+)toml");
+  const solve::Run result = run_of(made, {.until = 3, .tolerance = 1e-9, .samples = 61});
+  EXPECT_EQ(result.method.method, diagram::IntegrationMethod::bdf);
+  EXPECT_LT(result.statistics.steps, 2000);
+  const std::vector<double> t = row_values(result, "t"), u = row_values(result, "u"),
+                            x = row_values(result, "x");
+  for (std::size_t row = 1; row < t.size(); ++row) {
+    // u = 20 w within the limit, but for 1/gain: it is beyond it from 0.0221 s after each zero of w to as
+    // long before
+    const double of_half = std::fmod(t[row], 1 / 0.6);
+    if (of_half < 0.03 || of_half > 1 / 0.6 - 0.03) continue;
+    EXPECT_EQ(u[row], t[row] < 1 / 0.6 ? 0.5 : -0.5) << t[row];
+    if (t[row] > 0.03 && t[row] < 1.6) {
+      // x′ = 20 w − 2x until then, and 0.5 − 2x from then on: no row lies before
+      EXPECT_NEAR(x[row] - 0.25, (x[1] - 0.25) * std::exp(-2 * (t[row] - t[1])), 1e-8) << t[row];
+    }
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

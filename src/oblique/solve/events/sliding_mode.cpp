@@ -348,6 +348,23 @@ std::optional<bool> SlidingMode::rests_above(std::size_t unit) const {
   return std::abs(sides.above) < std::abs(sides.below);
 }
 
+bool SlidingMode::comes_back(std::size_t unit, std::size_t state, double t, std::span<const double> x) {
+  constexpr double kBeside = 1e-6;  // [machine unit]
+  const auto above = rests_above(unit);
+  if (!above) return false;
+  SlideSide side = *above ? upper_side(unit) : sides_[0];
+  std::vector<double> beside(x.begin(), x.end());
+  bool back = false;
+  for (const double by : {kBeside, -kBeside}) {
+    beside[state] = x[state] + by;
+    if (!evaluate(side, t, beside)) continue;
+    const double there = sides_.of_unit(side.event_functions, unit), rate = sides_.of_unit(side.rates, unit);
+    back = back || (*above ? there > 0 && rate < 0 : there < 0 && rate > 0);
+  }
+  load_base();
+  return back;
+}
+
 SlidingMode::Doubt SlidingMode::doubt(std::size_t unit) const {
   const Drives sides = drives(unit);
   const bool is_let_go = repulsion(unit).value_or(-1) > -kNoDrive;

@@ -81,6 +81,9 @@ class SlidingMode {
   /// Of a unit that nothing couples and that rests on the one side to which the other drives: whether that is
   /// the upper one.
   std::optional<bool> rests_above(std::size_t unit) const;
+  /// Of such a unit whose event function reads this state alone: whether the side on which it rests leads it
+  /// back to the switching surface from just beside it, as an amplifier beyond its limit comes back.
+  bool comes_back(std::size_t unit, std::size_t state, double t, std::span<const double> x);
   /// Whether both sides of a unit that nothing couples drive to the switching surface, and neither hardly.
   bool is_held(std::size_t unit) const;
   /// What is uncertain where a unit would leave the switching surface here.

@@ -266,7 +266,7 @@ void Switching::put_on_levels(double t, std::vector<double>& x) {
   for (std::size_t u = 0; u < units.size(); ++u) {
     const std::uint32_t unit = units[u];
     const std::optional<std::size_t> state = lone_states_[unit];
-    if (!state || !slide_.is_held(u)) continue;
+    if (!state) continue;
     const std::uint32_t s = program_.switch_structure().members[unit].front();
     const network::Evaluation& here = evaluate(t, x);
     std::vector<double> rates(x.size(), 0.0), moving(program_.switches().size()), still(moving.size());
@@ -275,6 +275,7 @@ void Switching::put_on_levels(double t, std::vector<double>& x) {
     here.event_function_rates(rates.data(), moving.data());
     const double off = event_functions_[s] / (moving[s] - still[s]);
     if (still[s] != 0 || !(std::abs(off) < kBeside)) continue;
+    if (!slide_.is_held(u) && !slide_.comes_back(u, *state, t, x)) continue;
     x[*state] -= off;
     still_.push_back(*state);
   }
@@ -431,9 +432,24 @@ void Switching::mark_held(double t, const double* x, std::vector<bool>& held) {
   }
 }
 
+/// Makes the derivatives of the states that stand zero.
+void Switching::stand_rows(std::span<double> entries) const {
+  const network::SparsePattern& pattern = program_.jacobian_pattern();
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const auto row = static_cast<std::size_t>(pattern.rows[k]);
+    if (std::find(still_.begin(), still_.end(), row) != still_.end()) entries[k] = 0;
+  }
+}
+
 bool Switching::jacobian(double t, const double* x, double* values) {
   const std::span<double> entries(values, program_.jacobian_pattern().entries());
-  if (slide_.active()) return inside(t, entries, [&](double at) { return slide_.jacobian(at, x, values); });
+  if (slide_.active()) {
+    const bool known = inside(t, entries, [&](double at) { return slide_.jacobian(at, x, values); });
+    // What stands does so whatever the states are: by the derivatives of an amplifier at its limit, which are
+    // large, Newton's method would leave it where it was led to.
+    if (!still_.empty()) stand_rows(entries);
+    return known;
+  }
   if (!inside(t, entries, [&](double at) { return program_.jacobian(at, x, values, workspace_); }))
     return false;
   edges_.complete_jacobian(t, x, entries);

@@ -153,6 +153,7 @@ class Switching {
   std::optional<EventActions::Effect> serve_events(double t, std::vector<double>& x, bool starting);
   void settle_switches(double t, std::span<const double> x);
   void put_on_levels(double t, std::vector<double>& x);
+  void stand_rows(std::span<double> entries) const;
   std::vector<double> readings(double t, std::span<const double> x);
   bool look_at_hidden(double t, const Interpolant& solution);
   void look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution);
