@@ -32,6 +32,12 @@ class Operate : public ::testing::Test {
     return run_command("oblique operate decay.toml < commands", folder_.path().string());
   }
 
+  std::string text_of(const std::string& file) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / file).rdbuf();
+    return text.str();
+  }
+
   ScratchFolder folder_;
 };
 
@@ -76,14 +82,38 @@ TEST_F(Operate, ShowsItsLamps) {
   EXPECT_EQ(done.status, 0);
 }
 
+TEST_F(Operate, ReplacesNothingThatItsMachineWasMadeFrom) {
+  std::filesystem::create_symlink("decay.toml", folder_ / "link.toml");
+  const std::string before = text_of("decay.toml");
+  const Outcome done = operate("advance 1\nsave decay.toml\nsave ./decay.toml\nsave link.toml\nread x\n");
+  EXPECT_EQ(done.err,
+            "error: line 2: decay.toml: this file is read, and would be replaced\n"
+            "  remedy: write to another file\n"
+            "error: line 3: ./decay.toml: this file is read, as decay.toml, and would be replaced\n"
+            "  remedy: write to another file\n"
+            "error: line 4: link.toml: this file is read, as decay.toml, and would be replaced\n"
+            "  remedy: write to another file\n");
+  EXPECT_THAT(done.out, HasSubstr("x = 0.367879"));
+  EXPECT_EQ(done.status, 2);
+  EXPECT_EQ(text_of("decay.toml"), before);
+}
+
+// Also where the system gives a new file the number of one that was replaced.
+TEST_F(Operate, SavesUnderOneNameAsOftenAsItIsAskedTo) {
+  const Outcome done = operate(
+      "advance 1\nsave s.toml\nadvance 2\nsave s.toml\nadvance 3\nsave s.toml\nrestore s.toml\n"
+      "save s.toml\nsave t.toml\nrestore t.toml\nsave t.toml\nadvance 4\nrestore s.toml\nread x\n");
+  EXPECT_EQ(done.err, "wrote s.toml\nwrote s.toml\nwrote s.toml\nwrote s.toml\nwrote t.toml\nwrote t.toml\n");
+  EXPECT_THAT(done.out, HasSubstr("x = 0.049787"));
+  EXPECT_EQ(done.status, 0);
+}
+
 TEST_F(Operate, SavesAndRestores) {
   const Outcome done =
       operate("advance 1\nsave s.toml\nadvance 2\nrestore s.toml\nhold\nadvance 5\nread side\n");
   EXPECT_EQ(done.status, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("side = 3.678794"));
-  std::ostringstream text;
-  text << std::ifstream(folder_ / "s.toml").rdbuf();
-  EXPECT_THAT(text.str(), HasSubstr("time = 1\n"));
+  EXPECT_THAT(text_of("s.toml"), HasSubstr("time = 1\n"));
 }
 
 }  // namespace

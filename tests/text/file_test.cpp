@@ -141,6 +141,26 @@ TEST_F(File, ThatIsClaimedIsNotReadUntilTheClaimEnds) {
   EXPECT_EQ(read_file(folder_ / "a.csv"), "text");
 }
 
+TEST_F(File, ThatIsReadIsRecordedAsLongAsTheRecordLives) {
+  write_file(folder_ / "a.csv", "text");
+  write_file(folder_ / "b.csv", "text");
+  std::filesystem::create_symlink("a.csv", folder_ / "link.csv");
+  read_file(folder_ / "b.csv");
+  std::vector<std::filesystem::path> inputs;
+  {
+    const InputRecord record;
+    read_file(folder_ / "a.csv");
+    inputs = record.files();
+  }
+  EXPECT_EQ(inputs, std::vector<std::filesystem::path>{folder_ / "a.csv"});
+  EXPECT_THAT([&] { refuse_output(folder_ / "link.csv", inputs); },
+              ::testing::ThrowsMessage<ReadError>(
+                  (folder_ / "link.csv").string() + ": this file is read, as " +
+                  (folder_ / "a.csv").string() + ", and would be replaced\n  remedy: write to another file"));
+  EXPECT_NO_THROW(refuse_output(folder_ / "b.csv", inputs));
+  EXPECT_NO_THROW(refuse_output(folder_ / "new.csv", inputs));
+}
+
 // A device must be written to and never replaced by a file, which root otherwise could.
 TEST_F(File, ThatIsADeviceIsWrittenToAndNotReplaced) {
   std::filesystem::create_symlink("/dev/null", folder_ / "sink");

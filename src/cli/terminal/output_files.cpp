@@ -32,6 +32,11 @@ void check_output(const std::filesystem::path& path, std::string_view ending) {
 }
 
 void check_output(const std::filesystem::path& path, std::span<const std::string_view> endings) {
+  check_writable(path, endings);
+  hold_claim(path);
+}
+
+void check_writable(const std::filesystem::path& path, std::span<const std::string_view> endings) {
   text::check_ending(path, endings);
   std::error_code unknown;
   const std::filesystem::file_status status = std::filesystem::status(path, unknown);
@@ -55,7 +60,6 @@ void check_output(const std::filesystem::path& path, std::span<const std::string
                          {},
                          "name a file in a folder that you may write to"});
   }
-  hold_claim(path);
 }
 
 void save(const std::filesystem::path& path, std::string_view text) {

@@ -15,6 +15,10 @@ namespace oblique::cli {
 void check_output(const std::filesystem::path& path, std::span<const std::string_view> endings);
 void check_output(const std::filesystem::path& path, std::string_view ending);
 
+/// As `check_output`, without the claim: for what is written as often as it is asked for, with
+/// `text::refuse_output` for what was read.
+void check_writable(const std::filesystem::path& path, std::span<const std::string_view> endings);
+
 /// Writes a file and says so on stderr.
 void save(const std::filesystem::path& path, std::string_view text);
 

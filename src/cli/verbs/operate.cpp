@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <sstream>
@@ -13,6 +15,7 @@
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/draw/chart/chart.h>
 #include <oblique/text/file.h>
+#include <oblique/text/output_claim.h>
 #include <oblique/text/trimmed.h>
 #include "terminal/output_files.h"
 #include "terminal/plot_output.h"
@@ -37,7 +40,9 @@ constexpr const char* kCommands =
 /// A machine that obeys lines of text.
 class Operator {
  public:
-  explicit Operator(console::Console console) : console_(std::move(console)) {}
+  /// `inputs`: the files that the machine was made from.
+  Operator(console::Console console, std::vector<std::filesystem::path> inputs)
+      : console_(std::move(console)), inputs_(std::move(inputs)) {}
 
   double time() const { return console_.time(); }
 
@@ -81,8 +86,7 @@ class Operator {
       for (const solve::EventRecord& event : console_.events())
         print(fmt::format("t = {:.12g} s: {}\n", event.time, event.what));
     } else if (verb == "save") {
-      check_output(needed(verb, rest, "FILE.toml"), ".toml");
-      save(rest, solve::to_text(console_.save()));
+      save_state(needed(verb, rest, "FILE.toml"));
     } else if (verb == "restore") {
       console_.restore(solve::parse_run_state(text::read_file(needed(verb, rest, "FILE.toml")), rest));
     } else if (verb == "help") {
@@ -123,6 +127,13 @@ class Operator {
     const std::string pot = rest.substr(0, space);
     if (console_.turn(pot, text::trimmed(rest.substr(space))) == console::Turned::compiled_anew)
       note(fmt::format("turned '{}' by compiling anew\n", pot));
+  }
+
+  void save_state(const std::string& file) {
+    constexpr std::array<std::string_view, 1> kEndings{".toml"};
+    check_writable(file, kEndings);
+    text::refuse_output(file, inputs_);
+    save(file, solve::to_text(console_.save()));
   }
 
   void set_scope(const std::string& names) {
@@ -183,14 +194,17 @@ class Operator {
   }
 
   console::Console console_;
+  std::vector<std::filesystem::path> inputs_;
   std::vector<std::string> probes_, told_;
 };
 
 }  // namespace
 
 ExitStatus operate(const Session& session, const OperateRequest& request) {
+  const text::InputRecord inputs;
   const diagram::BlockLibrary library = session.blocks();
-  Operator machine(console::Console(diagram::read_diagram(request.diagram), library));
+  console::Console console(diagram::read_diagram(request.diagram), library);
+  Operator machine(std::move(console), inputs.files());
   const bool at_terminal = isatty(STDIN_FILENO) == 1;
   ExitStatus status = ExitStatus::done;
   std::string line;

@@ -77,6 +77,7 @@ std::string read_file(const std::filesystem::path& path) {
   }
   const OpenFile file(path);
   OutputClaim::refuse_input(file.descriptor(), path);
+  InputRecord::note(path);
   std::string text;
   for (std::array<char, kPiece> piece;;) {  // NOLINT(*-member-init): the system fills it
     const ssize_t length = read(file.descriptor(), piece.data(), piece.size());

@@ -26,6 +26,24 @@ struct Claims {
 // NOLINTNEXTLINE(*-avoid-non-const-global-variables)
 Claims claims;
 
+/// The records that are kept in this program, by any of its threads.
+struct Records {
+  std::mutex mutex;
+  std::vector<InputRecord*> all;
+};
+
+// As the claims.
+// NOLINTNEXTLINE(*-avoid-non-const-global-variables)
+Records records;
+
+[[noreturn]] void refuse(const std::filesystem::path& output, const std::filesystem::path& input) {
+  const std::string alias = output == input ? "" : fmt::format(", as {}", input.string());
+  throw ReadError(Diagnostic{{output.string(), {}},
+                             fmt::format("this file is read{}, and would be replaced", alias),
+                             {},
+                             "write to another file"});
+}
+
 std::optional<FileIdentity> identity_of(const struct stat& status) {
   if (!S_ISREG(status.st_mode)) return std::nullopt;
   return FileIdentity{status.st_dev, status.st_ino, {}};
@@ -80,12 +98,35 @@ void OutputClaim::refuse_input(int descriptor, const std::filesystem::path& path
   if (claims.all.empty()) return;
   const std::optional<FileIdentity> identity = FileIdentity::of_open_file(descriptor);
   for (const OutputClaim* claim : claims.all) {
-    if (!identity || claim->identity_ != identity) continue;
-    const std::string alias = claim->path_ == path ? "" : fmt::format(", as {}", path.string());
-    throw ReadError(Diagnostic{{claim->path_.string(), {}},
-                               fmt::format("this file is read{}, and would be replaced", alias),
-                               {},
-                               "write to another file"});
+    if (identity && claim->identity_ == identity) refuse(claim->path_, path);
+  }
+}
+
+InputRecord::InputRecord() {
+  const std::scoped_lock lock(records.mutex);
+  records.all.push_back(this);
+}
+
+InputRecord::~InputRecord() {
+  const std::scoped_lock lock(records.mutex);
+  std::erase(records.all, this);
+}
+
+std::vector<std::filesystem::path> InputRecord::files() const {
+  const std::scoped_lock lock(records.mutex);
+  return files_;
+}
+
+void InputRecord::note(const std::filesystem::path& path) {
+  const std::scoped_lock lock(records.mutex);
+  for (InputRecord* record : records.all) record->files_.push_back(path);
+}
+
+void refuse_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs) {
+  const std::optional<FileIdentity> identity = FileIdentity::of_path(path);
+  if (!identity) return;
+  for (const std::filesystem::path& input : inputs) {
+    if (FileIdentity::of_path(input) == identity) refuse(path, input);
   }
 }
 

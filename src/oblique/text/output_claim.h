@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace oblique::text {
 
@@ -44,5 +45,26 @@ class OutputClaim {
   std::filesystem::path path_;
   std::optional<FileIdentity> identity_;
 };
+
+/// The files that `read_file` reads as long as the record lives, on any thread: for a program that goes on
+/// after it has read them, and learns only then what it is to write. Not installed.
+class InputRecord {
+ public:
+  InputRecord();
+  ~InputRecord();
+  InputRecord(const InputRecord&) = delete;
+  InputRecord& operator=(const InputRecord&) = delete;
+
+  std::vector<std::filesystem::path> files() const;
+
+  /// Tells every record of a file that is read.
+  static void note(const std::filesystem::path& path);
+
+ private:
+  std::vector<std::filesystem::path> files_;
+};
+
+/// Throws ReadError where the output `path` leads to one of the files that were read.
+void refuse_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace oblique::text
