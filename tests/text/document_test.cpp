@@ -173,6 +173,28 @@ TEST(Document, TakesAByteOrderMarkAndTypesetSigns) {
   EXPECT_EQ(table.find("c")->position, (SourcePosition{4, 5}));
 }
 
+TEST(DocumentMessages, HaveTheRemedyOfWhatTheParserFinds) {
+  const auto remedy = [](std::string_view text) {
+    const std::string message = document_message(text);
+    return message.substr(std::min(message.find("  remedy: "), message.size()));
+  };
+  const auto twice = [](const std::string& name) {
+    return "  remedy: " + name + " stands here a second time: rename one of the two, or leave one out";
+  };
+  EXPECT_EQ(remedy("[blocks]\nx = { a = 1 }\nx = { a = 2 }\n"), twice("'x'"));
+  EXPECT_EQ(remedy("[run]\na = 1\n[run]\nb = 1\n"), twice("'run'"));
+  EXPECT_EQ(remedy("[b.x]\na = 1\n[b.x]\na = 2\n"), twice("'b.x'"));
+  EXPECT_EQ(remedy("run = 1\n[run]\n"), twice("'run'"));
+  EXPECT_EQ(remedy("x = { a = 1, a = 2 }\n"), twice("'a'"));
+  EXPECT_EQ(remedy("x = 1\nx.a = 2\n"), twice("a name"));
+  EXPECT_EQ(remedy("x = { a = 1 }\n[x.b]\n"), twice("'x.b'"));
+  EXPECT_EQ(remedy("a = 1e400\n"), "  remedy: numbers go up to 1.8e308: write a smaller one, or inf");
+  EXPECT_EQ(remedy("a = 99999999999999999999\n"),
+            "  remedy: write a number as long as this with a point: 1e20 or 1.0");
+  EXPECT_EQ(remedy("a = 1\r[b]\r"),
+            "  remedy: save the file anew and choose line ends of Unix (LF) or Windows (CR LF)");
+}
+
 TEST(Document, SaysWhatIsTypesetAndWhereACommaIsNoPoint) {
   EXPECT_THAT(document_message("a = 1\nb = \u201cx\u201d\n"), HasSubstr("the quotes here are typeset"));
   EXPECT_THAT(document_message("a = { x = 0,5 }\n"),

@@ -164,9 +164,27 @@ std::string with_plain_signs(std::string_view text) {
   return plain;
 }
 
-/// What to do about a line that is no TOML.
-std::string remedy_for(std::string_view text, int line) {
+/// What to do about what the parser says of a text, where that tells; else nothing.
+std::string remedy_for_words(std::string_view description) {
+  const auto says = [&](std::string_view words) { return description.find(words) != std::string_view::npos; };
+  if (says("cannot redefine") || says("into existing inline table")) {
+    const std::size_t from = description.find('\''), to = description.rfind('\'');
+    const std::string name(from < to ? description.substr(from, to + 1 - from) : "a name");
+    return name + " stands here a second time: rename one of the two, or leave one out";
+  }
+  if (says("parsing floating-point") && says("could not be interpreted"))
+    return "numbers go up to 1.8e308: write a smaller one, or inf";
+  if (says("is not representable in 64 bits"))
+    return "write a number as long as this with a point: 1e20 or 1.0";
+  if (says("expected '\\n' after '\\r'"))
+    return "save the file anew and choose line ends of Unix (LF) or Windows (CR LF)";
+  return "";
+}
+
+/// What to do about a line that is no TOML, of which the parser says `description`.
+std::string remedy_for(std::string_view text, int line, std::string_view description) {
   if (!is_utf8(text)) return "save the file anew and choose UTF-8 as its encoding";
+  if (const std::string remedy = remedy_for_words(description); !remedy.empty()) return remedy;
   for (int k = 1; k < line && !text.empty(); ++k)
     text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   text = text.substr(0, text.find('\n'));
@@ -231,7 +249,7 @@ Document parse_document(std::string_view text, std::string file) {
     if (description.starts_with(kPrefix)) description.remove_prefix(kPrefix.size());
     const SourcePosition position = position_of(error.source().begin);
     fail(std::move(file), position, fmt::format("broken TOML: {}", description),
-         remedy_for(text, position.line));
+         remedy_for(text, position.line, description));
   } catch (const TomlAssertion&) {
     fail(std::move(file), {}, "broken TOML: the parser lost its way in this file",
          "look for an unfinished [table] header or string");
