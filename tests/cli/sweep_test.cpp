@@ -217,5 +217,27 @@ TEST_F(Sweep, RunGivesAFamilyOfCurves) {
       "error: --vary runs the diagram several times, and --trust is of one run; expected one of the two\n");
 }
 
+// With and without a picture: an output is its columns of all values, a column may be named in full.
+TEST_F(Sweep, RunWritesTheChosenColumnsOfAFamily) {
+  const auto written = [&](const std::string& options) {
+    const Outcome outcome =
+        oblique("run " + decay_ + " --vary x.initial=0.5,1 -o " + file("f.csv") + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    std::string header;
+    csv_rows(file("f.csv"), header);
+    return header;
+  };
+  EXPECT_EQ(written(" --columns x"), "x (x.initial = 0.5),x (x.initial = 1)");
+  EXPECT_EQ(written(" --columns t,x --plot " + file("f.svg")), "t,x (x.initial = 0.5),x (x.initial = 1)");
+  EXPECT_EQ(written(" --columns 'x (x.initial = 1),t'"), "x (x.initial = 1),t");
+  for (const char* const name : {"v", "v (x.initial = 1)"}) {
+    const Outcome refused = oblique("run " + decay_ + " --vary x.initial=0.5,1 -o " + file("f.csv") +
+                                    " --columns '" + name + "'");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.err, HasSubstr("error: --columns: there is no column 'v'"));
+    EXPECT_EQ(refused.out, "") << "it was run before it was refused";
+  }
+}
+
 }  // namespace
 }  // namespace oblique::test

@@ -21,9 +21,10 @@ void add_run(CLI::App& app, Chosen& chosen) {
   verb->add_option("--step", request->step,
                    "set what this step of the diagram's lesson sets; with --check, hold what it says is seen")
       ->type_name("N");
-  verb->add_option("--vary", request->vary,
-                   "run with each of these values of a parameter or a weight, and give a family of curves: "
-                   "c.gain=1e2,1e3,1e4 or x.in[1]=0.1..1:10")
+  verb->add_option(
+          "--vary", request->vary,
+          "run with each of these values of a parameter or a weight, and give a family of curves: "
+          "c.gain=1e2,1e3,1e4 or x.in[1]=0.1..1:10; --columns then names outputs, each with all values")
       ->type_name("NAME=VALUES");
   verb->add_option("--from", request->from,
                    "go on from the state that an earlier run saved; --until is then later")

@@ -107,6 +107,17 @@ void check_request(const RunRequest& request) {
                        {}});
 }
 
+/// Refuses a name of --columns, "x" or "x (c.gain = 100)", of which there is no output before the family is
+/// run.
+void check_outputs(const std::vector<text::TableColumn>& columns, std::vector<std::string> names) {
+  for (std::string& name : names) {
+    const bool is_output =
+        std::any_of(columns.begin(), columns.end(), [&](const auto& column) { return column.name == name; });
+    if (!is_output) name = name.substr(0, name.rfind(" ("));
+  }
+  const ColumnChoice known(columns, names);
+}
+
 /// Runs the diagram with each value of --vary.
 ExitStatus run_family(const RunRequest& request, const diagram::Diagram& diagram,
                       const diagram::BlockLibrary& library,
@@ -127,6 +138,7 @@ ExitStatus run_family(const RunRequest& request, const diagram::Diagram& diagram
     drawn = report::drawn_columns(columns, {request.columns, request.against});
     report::ask_for_curves(options, columns.size());
   }
+  check_outputs(columns, request.columns);
   const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const ensemble::Family family =
       ensemble::run_family(diagram, library, overrides, variation, options, threads);
@@ -138,8 +150,8 @@ ExitStatus run_family(const RunRequest& request, const diagram::Diagram& diagram
          request.plot, plot_theme(request.theme));
   }
   if (!request.output.empty()) {
-    const ColumnChoice all(table.columns(), drawn ? std::vector<std::string>{} : request.columns);
-    TableOutput file(request.output, all, table.rows());
+    const ColumnChoice choice(table.columns(), report::names_in_table(family, columns, request.columns));
+    TableOutput file(request.output, choice, table.rows());
     file.add(table.values());
     file.finish();
   }

@@ -23,6 +23,11 @@ const solve::Run& good_run(const ensemble::Family& family) {
       {}, fmt::format("all runs failed; with {}: {}", family.label(0), family.runs.front().failure), {}, {}});
 }
 
+/// "side (c.gain = 100)".
+std::string name_in_table(const ensemble::Family& family, const std::string& output, std::size_t run) {
+  return fmt::format("{} ({})", output, family.label(run));
+}
+
 }  // namespace
 
 solve::Trajectory table_of(const ensemble::Family& family, const std::vector<text::TableColumn>& columns) {
@@ -30,7 +35,7 @@ solve::Trajectory table_of(const ensemble::Family& family, const std::vector<tex
   std::vector<text::TableColumn> all{columns.front()};
   for (std::size_t k = 0; k < family.runs.size(); ++k) {
     for (std::size_t c = 1; c < columns.size(); ++c)
-      all.push_back({fmt::format("{} ({})", columns[c].name, family.label(k)), columns[c].unit});
+      all.push_back({name_in_table(family, columns[c].name, k), columns[c].unit});
   }
   solve::Trajectory table(all);
   std::vector<double> row;
@@ -43,6 +48,20 @@ solve::Trajectory table_of(const ensemble::Family& family, const std::vector<tex
     table.add_row(row);
   }
   return table;
+}
+
+std::vector<std::string> names_in_table(const ensemble::Family& family,
+                                        const std::vector<text::TableColumn>& columns,
+                                        const std::vector<std::string>& names) {
+  std::vector<std::string> chosen;
+  for (const std::string& name : names) {
+    const bool is_output = std::any_of(columns.begin() + 1, columns.end(),
+                                       [&](const text::TableColumn& column) { return column.name == name; });
+    if (!is_output) chosen.push_back(name);
+    for (std::size_t k = 0; is_output && k < family.runs.size(); ++k)
+      chosen.push_back(name_in_table(family, name, k));
+  }
+  return chosen;
 }
 
 draw::Chart chart_of(const ensemble::Family& family, const std::vector<text::TableColumn>& columns,
