@@ -111,6 +111,27 @@ TEST_F(Sweep, GivesTheSameNumbersWithAnyNumberOfThreads) {
   EXPECT_EQ(bytes_of("1.csv"), bytes_of("2.csv"));
 }
 
+// A percentage is one of 1: of a gain of 1000 nobody means ±0.1 by 10 %.
+TEST_F(Sweep, RefusesAPercentageOfWhatIsBeyondOne) {
+  const auto sweep = [&](const std::string& factor, const std::string& width) {
+    std::ofstream(file("gain.toml"))
+        << "format = \"oblique-diagram/1\"\n[blocks]\nx = { type = \"integrator\", in = \"-x\", initial = 1 "
+           "}\n"
+           "low = { type = \"gain\", in = \"x\", factor = 0.5 }\ny = { type = \"gain\", in = \"x\", factor = "
+        << factor << " }\n[outputs]\ny = \"y\"\n";
+    return oblique("sweep " + file("gain.toml") + " --scatter gain.factor=" + width +
+                   " --runs 3 --measure 'start(y)'");
+  };
+  EXPECT_EQ(
+      sweep("-20", "10%").err,
+      "error: --scatter gain.factor=10%: 'y.factor' is -20, and 10 % is ±0.1, not a part of it; expected "
+      "half the width itself, without %\n"
+      "  remedy: write 0.1 for that, or 2 for 10 % of 20\n");
+  EXPECT_EQ(sweep("-20", "10%").status, 2);
+  EXPECT_EQ(sweep("-20", "0.1").status, 0);
+  EXPECT_EQ(sweep("0.9", "10%").status, 0);
+}
+
 TEST_F(Sweep, TellsOfMachinesThatFailAndGoesOn) {
   const Outcome outcome =
       oblique("sweep " + decay_ + " --vary 'x.in[1]=-1,1e300' --measure 'end(x)' -o " + file("t.csv"));

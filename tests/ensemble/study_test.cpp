@@ -452,6 +452,17 @@ TEST(Study, NamesAllFindingsAtTheirPlaces) {
       << message;
 }
 
+// In a plan all widths are read as numbers without a unit: a percentage is then none of 1/s.
+TEST(Study, RefusesAPercentageOfWhatHasAUnit) {
+  Plan plan = plan_of({}, {"end(x)"});
+  plan.runs = 3;
+  plan.scatter.push_back({"integrator", "rate", 0.1, {}, true});
+  EXPECT_EQ(testing::message_of<StudyError>([&] { study_of(plan, kStudiedDecay); }),
+            "'integrator.rate' is in 1/s, and 10 % is not; expected half the width in 1/s, without %");
+  plan.scatter[0].in_percent = false;
+  EXPECT_NO_THROW(study_of(plan, kStudiedDecay));
+}
+
 // A setting lies between 0 and 1: nothing is drawn beyond, and nothing mirrored, also not where it is varied
 // to.
 TEST(Study, RefusesScatterBeyondTheRangeOfAParameter) {

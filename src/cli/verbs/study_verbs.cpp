@@ -23,8 +23,8 @@ void add_sweep(CLI::App& app, Chosen& chosen) {
       ->allow_extra_args(false);
   verb->add_option(
           "--scatter", request->scatter,
-          "draw this parameter of all blocks of a type anew for each machine, uniformly within ±X of "
-          "what it is; may be repeated")
+          "draw this parameter of all blocks of a type anew for each machine, uniformly from X below what it "
+          "is to X above; X is in its unit (1% is 0.01, not a part of the value); may be repeated")
       ->type_name("TYPE.PARAMETER=X")
       ->allow_extra_args(false);
   verb->add_option("--tolerance-of-elements", request->tolerance_of_elements,

@@ -71,6 +71,7 @@ ensemble::Scattered scattered_of(const std::string& text, const diagram::BlockLi
       unit = text::parse_unit(definition->parameters[*index].unit).value_or(unit);
   }
   scattered.half_width = quantity_option("--scatter", width, unit.name);
+  scattered.in_percent = width.find('%') != std::string::npos;
   return scattered;
 }
 

@@ -80,6 +80,7 @@ TEST(PlanFile, HoldsAllThatDefinesAnEnsemble) {
   EXPECT_EQ(plan.scatter[0].block, "servo-amplifier");
   EXPECT_EQ(plan.scatter[0].parameter, "gain");
   EXPECT_EQ(plan.scatter[0].half_width, 0.2);
+  EXPECT_TRUE(plan.scatter[0].in_percent);
   ASSERT_EQ(plan.measures.size(), 2U);
   EXPECT_EQ(plan.measures[0].name, "worst");
   EXPECT_EQ(plan.measures[1].expression, "end(B.x)");

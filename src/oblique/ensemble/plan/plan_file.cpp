@@ -228,8 +228,9 @@ class PlanReader {
                           fmt::format("'{}' in [scatter] is {}", entry.key, *width),
                           "half the width of the scatter, a finite number above 0",
                           {}});
-      plan_.scatter.push_back(
-          {entry.key.substr(0, dot), entry.key.substr(dot + 1), *width, reader.place(entry.value.position)});
+      plan_.scatter.push_back({entry.key.substr(0, dot), entry.key.substr(dot + 1), *width,
+                               reader.place(entry.value.position),
+                               entry.value.text.find('%') != std::string::npos});
     }
   }
 

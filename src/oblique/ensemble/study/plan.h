@@ -26,8 +26,9 @@ struct Variation {
 struct Scattered {
   std::string block;      ///< "multiplier"
   std::string parameter;  ///< "error"
-  double half_width = 0;  ///< as a part, or in the parameter's unit where that is not relative
+  double half_width = 0;  ///< in the parameter's unit; never a part of its value
   text::Place place;
+  bool in_percent = false;  ///< written so: of 1, which of a parameter beyond 1 is hardly meant
 };
 
 /// A number of each run: "max(abs(side - exact))".

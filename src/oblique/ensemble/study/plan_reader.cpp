@@ -97,9 +97,10 @@ class PlanReader {
                text::suggest(scatter.block, types_of(flat)));
         continue;
       }
-      if (!definition->find_parameter(scatter.parameter)) {
+      const auto parameter = definition->find_parameter(scatter.parameter);
+      if (!parameter) {
         std::vector<std::string> names;
-        for (const auto& parameter : definition->parameters) names.push_back(parameter.name);
+        for (const auto& known : definition->parameters) names.push_back(known.name);
         report(scatter.place,
                fmt::format("'{}' of block type '{}' is not a parameter", scatter.parameter, scatter.block),
                {}, text::suggest(scatter.parameter, names));
@@ -111,6 +112,8 @@ class PlanReader {
                "a finite number above 0");
         continue;
       }
+      const std::string& unit = definition->parameters[*parameter].unit;
+      if (scatter.in_percent && !is_part_of_one(scatter, unit, flat)) continue;
       add_scatter({scatter.block, scatter.parameter, scatter.half_width, "scatter", definition->role}, flat,
                   scatter.place);
     }
@@ -137,6 +140,33 @@ class PlanReader {
     n_drawn_ = drawn_elements(flat, result_.scatters).size();
     if (n_drawn_ == 0 && !result_.scatters.empty() && findings_.empty())
       report({plan_.file, {}}, "no block of the diagram has a parameter that scatters");
+  }
+
+  /// Whether what scatters by a percentage is a number without a unit, and nowhere beyond 1: it is one of 1,
+  /// not of the value.
+  bool is_part_of_one(const Scattered& scatter, const std::string& unit, const diagram::FlatDiagram& flat) {
+    const auto wanted = text::parse_unit(unit);
+    if (wanted && !text::factor_between(text::parse_unit("%").value(), *wanted)) {
+      report(scatter.place,
+             fmt::format("'{}.{}' is in {}, and {:.6g} % is not", scatter.block, scatter.parameter, unit,
+                         100 * scatter.half_width),
+             fmt::format("half the width in {}, without %", unit));
+      return false;
+    }
+    const diagram::BlockFigure figure{scatter.block, scatter.parameter, scatter.half_width, "scatter"};
+    for (const DrawnElement& element : drawn_elements(flat, {figure})) {
+      const diagram::FlatBlock& block = flat.blocks[element.block];
+      const double value = block.parameters[element.parameter], size = std::abs(value);
+      if (!(size > 1) || !std::isfinite(value)) continue;
+      report(scatter.place,
+             fmt::format("'{}.{}' is {:.6g}, and {:.6g} % is ±{:.6g}, not a part of it", block.path,
+                         scatter.parameter, value, 100 * scatter.half_width, scatter.half_width),
+             "half the width itself, without %",
+             fmt::format("write {:.6g} for that, or {:.6g} for {:.6g} % of {:.6g}", scatter.half_width,
+                         scatter.half_width * size, 100 * scatter.half_width, size));
+      return false;
+    }
+    return true;
   }
 
   static std::vector<std::string> types_of(const diagram::FlatDiagram& flat) {
