@@ -119,17 +119,27 @@ TEST(TabulatedFunctions, TabulatesFunctionsOfOneSignalAlone) {
       HasSubstr("'p'"));
 }
 
-// A machine that has comparators and multipliers, and no function generators, as a Model-1. What these give
-// is continuous: no row is off.
-TEST(TabulatedFunctions, MakesCornersOfComparatorsWhereThereIsNoFunctionGenerator) {
+/// A machine that has comparators and multipliers, and no function generators, as a Model-1.
+diagram::MachineProfile without_function_generators() {
   diagram::MachineProfile machine = desk_machine();
   std::erase_if(machine.elements, [](const diagram::ElementCount& element) {
     return element.kind == diagram::ElementKind::function_generator;
   });
-  for (const std::string block : {R"({ type = "limiter", in = "u", low = -0.4, high = 1.3 })",
-                                  R"({ type = "dead-zone", in = "3*u", low = -0.4, high = 1.3 })",
-                                  R"({ type = "minimum", x = "u", y = "2*v" })",
-                                  R"({ type = "ramp", slope = 3, start = 0.5, stop = 2.5, initial = -2 })"}) {
+  return machine;
+}
+
+// What these give is continuous: no row is off.
+TEST(TabulatedFunctions, MakesCornersOfComparatorsWhereThereIsNoFunctionGenerator) {
+  const diagram::MachineProfile machine = without_function_generators();
+  for (
+      const std::string block :
+      {R"({ type = "limiter", in = "u", low = -0.4, high = 1.3 })",
+       R"({ type = "dead-zone", in = "3*u", low = -0.4, high = 1.3 })",
+       R"({ type = "function-generator", in = "u", points = [[-1, 1], [0.3, -0.2], [2, 1.5]] })",
+       R"({ type = "function-generator", in = "u", points = [[-1, 1], [2, 0.4]] })",
+       R"({ type = "function-generator", in = "u", points = { points = [[-1, 1], [1, 0]], beyond = "hold" } })",
+       R"({ type = "minimum", x = "u", y = "2*v" })",
+       R"({ type = "ramp", slope = 3, start = 0.5, stop = 2.5, initial = -2 })"}) {
     const diagram::Diagram diagram = parsed(fmt::format(R"toml(
 [run]
 until = 5
@@ -150,6 +160,28 @@ y = "y"
     EXPECT_TRUE(made.functions.empty()) << block;
     EXPECT_LE(greatest_signal(made.diagram), 1 + 1e-5) << block;
     EXPECT_LT(testing::difference(diagram, made.diagram), 1e-6) << block;
+  }
+}
+
+// Five corners are too many, and a jump is no corner: the list of elements has one that the machine has none
+// of.
+TEST(TabulatedFunctions, LeavesFunctionGeneratorsThatComparatorsCannotStandFor) {
+  for (const std::string points : {"[[-1, 0], [-0.6, 1], [-0.2, 0], [0.1, 1], [0.3, 0], [0.6, 1], [1, 0]]",
+                                   "[[-1, 0], [0.3, 0], [0.3, 1], [1, 1]]"}) {
+    const diagram::Diagram diagram = parsed(fmt::format(R"toml(
+[run]
+until = 5
+[blocks]
+u = {{ type = "integrator", in = ["3*w"] }}
+w = {{ type = "integrator", in = ["-3*u"], initial = 1 }}
+y = {{ type = "function-generator", in = "u", points = {} }}
+[outputs]
+y = "y"
+)toml",
+                                                        points));
+    const ScaledRealisation made = realise_scaled(diagram, shipped_blocks(), without_function_generators());
+    EXPECT_THAT(diagram::write_diagram(made.diagram), HasSubstr("function-generator")) << points;
+    EXPECT_TRUE(made.functions.empty()) << points;
   }
 }
 

@@ -114,10 +114,10 @@ class MachineScaling::State {
     const diagram::FlatDiagram own = diagram::flatten_on_ideal_elements(diagram, library);
     flat_ = in_circuits();
     wire_drains(flat_);
-    const bool has_others = std::any_of(flat_.blocks.begin(), flat_.blocks.end(), [](const auto& block) {
-      return block.definition->role == diagram::Role::other;
+    const bool has_functions = std::any_of(flat_.blocks.begin(), flat_.blocks.end(), [&](const auto& block) {
+      return may_be_tabulated(block.definition->role, machine);
     });
-    if (has_others) {
+    if (has_functions) {
       functions_ = tabulate_functions(flat_, elements_, machine, signal_ranges(flat_, diagram.run),
                                       diagram.run.until, options.segments);
     }

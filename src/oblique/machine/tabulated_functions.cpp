@@ -35,6 +35,7 @@ class Tabulator {
             int segments)
       : flat_(flat),
         library_(library),
+        machine_(machine),
         has_generators_(machine.find(diagram::ElementKind::function_generator) != nullptr),
         switches_corners_(!has_generators_ && machine.find(diagram::ElementKind::comparator) != nullptr &&
                           machine.find(diagram::ElementKind::multiplier) != nullptr),
@@ -53,7 +54,7 @@ class Tabulator {
   std::vector<TabulatedFunction> tabulate() {
     const std::size_t n = flat_.blocks.size();
     for (std::size_t b = 0; b < n; ++b) {
-      if (flat_.blocks[b].definition->role != Role::other) continue;
+      if (!may_be_tabulated(flat_.blocks[b].definition->role, machine_)) continue;
       if (!is_needed(b)) continue;
       FunctionReader function(flat_.blocks[b]);
       if (!function.is_function()) continue;
@@ -140,6 +141,10 @@ class Tabulator {
     if (one.error <= kStraight * size) return summer(one.points, block, path, argument);
     const LineSegments lines = lines_for(function, value, range, segments_);
     const bool is_exact = lines.error <= kStraight * (lines.high - lines.low);
+    constexpr std::size_t kMostCorners = 4;
+    const bool becomes_corners = switches_corners_ && is_exact && lines.points.x.size() <= kMostCorners + 2;
+    // It is then refused as the function generator that it is.
+    if (block.definition->role == Role::function_generator && !becomes_corners) return block;
     if (function.of_time && !is_exact) {
       const auto circuit = time_circuit(*function.of_time, until_);
       if (circuit && is_better(*circuit, lines)) return drawn(*circuit, block, path);
@@ -174,9 +179,7 @@ class Tabulator {
            text::Remedy{"more lines (", text::Setting{"segments"}, "), if the machine has them"}});
       return block;
     }
-    constexpr std::size_t kMostCorners = 4;
-    const bool has_few_corners = is_exact && lines.points.x.size() <= kMostCorners + 2;
-    if (switches_corners_ && has_few_corners) return corners(lines.points, block, path, argument);
+    if (becomes_corners) return corners(lines.points, block, path, argument);
     functions_.push_back({path, block.definition->name, static_cast<int>(lines.points.x.size()) - 1,
                           range.low, range.high, lines.error});
     diagram::FlatBlock generator = element_for(block, Role::function_generator, path);
@@ -476,6 +479,7 @@ class Tabulator {
 
   diagram::FlatDiagram& flat_;
   const diagram::BlockLibrary& library_;
+  const diagram::MachineProfile& machine_;
   bool has_generators_;
   bool switches_corners_;
   const std::vector<SignalRange>& ranges_;
@@ -492,6 +496,11 @@ class Tabulator {
 };
 
 }  // namespace
+
+bool may_be_tabulated(Role role, const diagram::MachineProfile& machine) {
+  return role == Role::other || (role == Role::function_generator &&
+                                 machine.find(diagram::ElementKind::function_generator) == nullptr);
+}
 
 std::vector<TabulatedFunction> tabulate_functions(diagram::FlatDiagram& flat,
                                                   const diagram::BlockLibrary& library,

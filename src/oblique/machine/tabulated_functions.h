@@ -21,13 +21,18 @@ struct TabulatedFunction {
   double error = 0;  ///< greatest distance of the lines from the function [machine unit of the diagram]
 };
 
+/// Whether blocks of a role may become others where they are functions: what has no role, and function
+/// generators where the machine has none.
+bool may_be_tabulated(diagram::Role role, const diagram::MachineProfile& machine);
+
 /// Puts function generators of at most `segments` straight lines in the place of blocks without a role whose
 /// outputs are functions of one signal, or of time, and of nothing else: for time an integrator of a constant
 /// is added, "clock". What is a straight line itself becomes a summer; what has a few corners and is straight
-/// between them comparators and multipliers, where the machine has these and no function generators; a
-/// formula of the time that is neither the circuit that draws it (`time_circuit`), where there is one.
-/// `ranges` are those of the signals of `flat` (`signal_ranges`), which is run for `until` [s]. Throws
-/// RealiseError for a function that jumps, is not finite somewhere in the range, or that so many lines miss.
+/// between them, also a function generator, comparators and multipliers, where the machine has these and no
+/// function generators; a formula of the time that is neither the circuit that draws it (`time_circuit`),
+/// where there is one. `ranges` are those of the signals of `flat` (`signal_ranges`), which is run for
+/// `until` [s]. Throws RealiseError for a function that jumps, is not finite somewhere in the range, or that
+/// so many lines miss.
 std::vector<TabulatedFunction> tabulate_functions(diagram::FlatDiagram& flat,
                                                   const diagram::BlockLibrary& library,
                                                   const diagram::MachineProfile& machine,
