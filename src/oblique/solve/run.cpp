@@ -25,8 +25,8 @@ Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diag
                const RunOptions& options, const LoopStart& loop_start) {
   constexpr int kMostTries = 5;
   constexpr std::int64_t kMostTimesFirst = 100, kAlwaysAllowed = 100'000;  // steps of a finer run
-  // For a comparison that lies within errors alone a finer run takes some times as many steps, or it is one of what
-  // rests on its level, and no run is fine enough.
+  // For a comparison that lies within errors alone a finer run takes some times as many steps, or it is one
+  // of what rests on its level, and no run is fine enough.
   constexpr std::int64_t kMostTimesForFaint = 30, kAlwaysAllowedForFaint = 2'000;
   Refinement refinement;
   RunOptions finer = options;

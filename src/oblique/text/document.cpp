@@ -184,7 +184,7 @@ std::string remedy_for_words(std::string_view description) {
 /// What to do about a line that is no TOML, of which the parser says `description`.
 std::string remedy_for(std::string_view text, int line, std::string_view description) {
   if (!is_utf8(text)) return "save the file anew and choose UTF-8 as its encoding";
-  if (const std::string remedy = remedy_for_words(description); !remedy.empty()) return remedy;
+  if (std::string remedy = remedy_for_words(description); !remedy.empty()) return remedy;
   for (int k = 1; k < line && !text.empty(); ++k)
     text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
   text = text.substr(0, text.find('\n'));

@@ -154,19 +154,23 @@ class PlanReader {
       return false;
     }
     const diagram::BlockFigure figure{scatter.block, scatter.parameter, scatter.half_width, "scatter"};
-    for (const DrawnElement& element : drawn_elements(flat, {figure})) {
-      const diagram::FlatBlock& block = flat.blocks[element.block];
-      const double value = block.parameters[element.parameter], size = std::abs(value);
-      if (!(size > 1) || !std::isfinite(value)) continue;
-      report(scatter.place,
-             fmt::format("'{}.{}' is {:.6g}, and {:.6g} % is ±{:.6g}, not a part of it", block.path,
-                         scatter.parameter, value, 100 * scatter.half_width, scatter.half_width),
-             "half the width itself, without %",
-             fmt::format("write {:.6g} for that, or {:.6g} for {:.6g} % of {:.6g}", scatter.half_width,
-                         scatter.half_width * size, 100 * scatter.half_width, size));
-      return false;
-    }
-    return true;
+    const auto value_of = [&](const DrawnElement& element) {
+      return flat.blocks[element.block].parameters[element.parameter];
+    };
+    const std::vector<DrawnElement> drawn = drawn_elements(flat, {figure});
+    const auto beyond = std::find_if(drawn.begin(), drawn.end(), [&](const DrawnElement& element) {
+      return std::isfinite(value_of(element)) && std::abs(value_of(element)) > 1;
+    });
+    if (beyond == drawn.end()) return true;
+    const double value = value_of(*beyond), size = std::abs(value);
+    report(scatter.place,
+           fmt::format("'{}.{}' is {:.6g}, and {:.6g} % is ±{:.6g}, not a part of it",
+                       flat.blocks[beyond->block].path, scatter.parameter, value, 100 * scatter.half_width,
+                       scatter.half_width),
+           "half the width itself, without %",
+           fmt::format("write {:.6g} for that, or {:.6g} for {:.6g} % of {:.6g}", scatter.half_width,
+                       scatter.half_width * size, 100 * scatter.half_width, size));
+    return false;
   }
 
   static std::vector<std::string> types_of(const diagram::FlatDiagram& flat) {
