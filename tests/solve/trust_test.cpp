@@ -98,6 +98,19 @@ is_above = { type = "comparator", in = "x" }
   EXPECT_LT(trust.outputs[0].largest, 100 * error);
 }
 
+// A magnitude and a comparator turn over together each half a second; a run tells of one of the two, or of
+// both.
+TEST(Trust, TakesEventsOfOneComparisonForTheSame) {
+  const Compiled made(R"toml(s = { type = "sine-source" }
+ab = { type = "absolute-value", in = "s" }
+z = { type = "integrator", in = ["ab"] }
+c = { type = "comparator", in = ["s"] }
+)toml",
+                      "[outputs]\nz = \"z\"\nc = \"c\"\n");
+  for (const double until : {19.25, 21.25, 30.25, 100.25})
+    EXPECT_FALSE(trusted(made, until, {}).trust->events_part) << until;
+}
+
 // A switch that only the coarser of two runs reaches: x = sin t rises to 1, and the threshold lies 1e-7 above
 // it. At a tolerance of 1e-4 x passes it in one run of the two or in none; where it does, the runs part.
 TEST(Trust, TellsWhereEventsPart) {

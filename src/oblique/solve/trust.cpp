@@ -7,6 +7,7 @@
 #include <functional>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/solve_error.h>
 
@@ -26,21 +27,35 @@ struct Between {
   double from, to;  ///< [s]
 };
 
-/// Pairs the events of two runs.
+/// Whether an event comes at the instant of the one before it.
+bool comes_along(const std::vector<EventRecord>& events, std::size_t k) {
+  return k > 0 && k < events.size() && events[k].time - events[k - 1].time <= time_resolution(events[k].time);
+}
+
+/// Pairs the events of two runs. Of two comparisons with one event function a run may tell of either, or of
+/// both: what comes along with a paired event in one run alone is no difference.
 std::vector<Between> pair_events(const Run& a, const Run& b, Trust& trust) {
   std::vector<Between> pairs;
-  const std::size_t both = std::min(a.events.size(), b.events.size());
-  std::size_t k = 0;
-  for (; k < both && a.events[k].what == b.events[k].what; ++k) {
-    const auto [from, to] = std::minmax(a.events[k].time, b.events[k].time);
-    pairs.push_back({from, to});
-    trust.event_shift = std::max(trust.event_shift, to - from);
+  std::size_t i = 0, j = 0;
+  while (true) {
+    if (i < a.events.size() && j < b.events.size() && a.events[i].what == b.events[j].what) {
+      const auto [from, to] = std::minmax(a.events[i++].time, b.events[j++].time);
+      pairs.push_back({from, to});
+      trust.event_shift = std::max(trust.event_shift, to - from);
+    } else if (comes_along(a.events, i)) {
+      ++i;
+    } else if (comes_along(b.events, j)) {
+      ++j;
+    } else {
+      break;
+    }
   }
-  const bool all_told = k == a.events.size() && k == b.events.size();
-  if (all_told && a.event_count == b.event_count) return pairs;
+  const bool all_told = i == a.events.size() && j == b.events.size();
+  const auto untold = [](const Run& run) { return run.event_count - static_cast<long>(run.events.size()); };
+  if (all_told && untold(a) == untold(b)) return pairs;
   double part = std::numeric_limits<double>::infinity();
-  if (k < a.events.size()) part = a.events[k].time;
-  if (k < b.events.size()) part = std::min(part, b.events[k].time);
+  if (i < a.events.size()) part = a.events[i].time;
+  if (j < b.events.size()) part = std::min(part, b.events[j].time);
   if (all_told) part = a.events.back().time;  // the lists end there, and their counts differ
   trust.events_part = std::min(part, trust.events_part.value_or(part));
   return pairs;
