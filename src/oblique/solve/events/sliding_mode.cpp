@@ -406,8 +406,9 @@ bool SlidingMode::find_only_share(std::size_t unit, double most_back) {
   if (!std::isfinite(below - above)) return false;
   if (below == above)  // a slide stays as it was where its sides say nothing; none begins there
     return slides_on_[unit] && std::abs(below) <= kNoDrive * strongest_[units_[unit]];
-  shares_[unit] = (below + way_back(sides_, unit, kReturn / span_, most_back * std::abs(below - above))) /
-                  (below - above);
+  shares_[unit] =
+      (below + oblique::solve::way_back(sides_, unit, kReturn / span_, most_back * std::abs(below - above))) /
+      (below - above);
   // Where the sides hardly drive any more the way back says nothing; what follows is told by `repulsion`.
   if (std::abs(below - above) < kNoDrive * strongest_[units_[unit]])
     shares_[unit] = std::clamp(shares_[unit], 0.0, 1.0);
@@ -525,10 +526,26 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> SlidingMode::act_together
 }
 
 bool SlidingMode::derivatives(double t, const double* x, double* dxdt) {
-  if (!evaluate(t, {x, program_.n_states()})) return false;
+  if (!evaluate(t, {x, program_.n_states()}, !leaves_)) return false;
   std::fill(dxdt, dxdt + program_.n_states(), 0.0);
   for (const SlideSide& side : sides_) {
     for (std::size_t i = 0; i < program_.n_states(); ++i) dxdt[i] += side.weight * side.dxdt[i];
+  }
+  return true;
+}
+
+bool SlidingMode::way_back(double t, const double* x, double h, double* change) {
+  constexpr double kAnyRate = std::numeric_limits<double>::infinity();  // no shares show it
+  if (!leaves_ || !evaluate(t, {x, program_.n_states()}, false)) return false;
+  std::vector<double> weights;
+  for (const SlideSide& side : sides_) weights.push_back(side.weight);
+  if (!find_shares(kAnyRate)) return false;
+  const double whole = std::min(h, span_ / kReturn);  // no farther than to the surface
+  std::fill(change, change + program_.n_states(), 0.0);
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const SlideSide& side = sides_[k];
+    for (std::size_t i = 0; i < program_.n_states(); ++i)
+      change[i] += whole * (side.weight - weights[k]) * side.dxdt[i];
   }
   return true;
 }

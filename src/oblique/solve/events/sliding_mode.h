@@ -63,6 +63,10 @@ class SlidingMode {
   /// As those of Program. False where a loop has no solution on one of the sides.
   bool derivatives(double t, const double* x, double* dxdt);
   bool jacobian(double t, const double* x, double* values);
+  /// Whether `derivatives` leaves what slides where it is, for a method whose order the way back, which is
+  /// bounded, would break; and by how much a step of `h` seconds is to change the states on that way alone.
+  void leave_where_it_is(bool leave) { leaves_ = leave; }
+  bool way_back(double t, const double* x, double h, double* change);
   bool signals(double t, const double* x, double* values);
 
   /// Evaluates all sides and the shares at (t, x), those that take back what integration has let the event
@@ -162,6 +166,7 @@ class SlidingMode {
   std::vector<bool> follows_, rests_;
   std::vector<std::uint32_t> followers_;
   std::vector<std::uint32_t> segments_;  ///< the discrete states of tables whose ends are followers
+  bool leaves_ = false;                  ///< see `leave_where_it_is`
   SlideSides sides_;
   std::vector<std::pair<std::uint32_t, double>> base_;  ///< positions that events see
   std::vector<double> shares_;

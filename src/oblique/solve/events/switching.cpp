@@ -413,6 +413,12 @@ bool Switching::derivatives(double t, const double* x, double* dxdt) {
   return true;
 }
 
+bool Switching::way_back(double t, const double* x, double h, double* change) {
+  if (!slide_.active() || !slide_.way_back(t, x, h, change)) return false;
+  for (const std::size_t i : still_) change[i] = 0;
+  return true;
+}
+
 void Switching::mark_held(double t, const double* x, std::vector<bool>& held) {
   if (!slide_.active() || slide_.units() == marked_) return;
   std::vector<double> values(program_.switches().size()), still(values.size());

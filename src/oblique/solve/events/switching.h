@@ -99,6 +99,9 @@ class Switching {
   /// dx/dt, its Jacobian and all signals, with what slides held on its switching surfaces.
   bool derivatives(double t, const double* x, double* dxdt);
   bool jacobian(double t, const double* x, double* values);
+  /// See SlidingMode; nothing for what stands.
+  void leave_slides_where_they_are(bool leave) { slide_.leave_where_it_is(leave); }
+  bool way_back(double t, const double* x, double h, double* change);
   bool signals(double t, const double* x, double* values);
 
   /// A step of this length [s] has led to where events are searched for next, by a method that damps what is

@@ -45,7 +45,9 @@ Integration::Integration(const Parts& parts, MethodChoice method, const Refineme
 
 std::unique_ptr<Solver> Integration::make_solver(double t) {
   const Segments& segments = parts_.segments;
-  if (settings_.method == diagram::IntegrationMethod::rodas) {
+  const bool rodas = settings_.method == diagram::IntegrationMethod::rodas;
+  parts_.switching.leave_slides_where_they_are(rodas);
+  if (rodas) {
     return std::make_unique<RosenbrockSolver>(parts_.system, t, parts_.states, segments.end(),
                                               segments.length(), settings_);
   }

@@ -22,6 +22,9 @@ class OdeSystem {
   virtual bool is_jacobian_exact() const { return true; }
   /// Marks the states that a slide at (t, x) may hold at zero: those that its event functions read.
   virtual void mark_held(double /*t*/, const double* /*x*/, std::vector<bool>& /*held*/) const {}
+  /// By how much a step of `h` seconds is to take what slides back to its switching surface, where
+  /// `derivatives` leaves it where it is; false where nothing is to be.
+  virtual bool way_back(double /*t*/, const double* /*x*/, double /*h*/, double* /*change*/) { return false; }
   /// Whether f may depend on the time.
   virtual bool depends_on_time() const { return true; }
   /// Whether the solver is to end, also in the midst of a step.

@@ -182,6 +182,8 @@ RosenbrockSolver::Outcome RosenbrockSolver::try_step(double h) {
   if (!look_between(h)) return Outcome::impossible;
   if (!(error_ <= 1)) return Outcome::inaccurate;
   const double clock = h >= length_ - clock_ ? length_ : clock_ + h;
+  if (system_.way_back(time_of(clock), after_.data(), h, derivatives_.data()))
+    add(1, derivatives_.data(), after_);
   return evaluate(clock, after_, rates_after_) ? Outcome::taken : Outcome::impossible;
 }
 

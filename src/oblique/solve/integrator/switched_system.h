@@ -30,6 +30,9 @@ class SwitchedSystem final : public OdeSystem {
   void mark_held(double t, const double* x, std::vector<bool>& held) const override {
     switching_.mark_held(t, x, held);
   }
+  bool way_back(double t, const double* x, double h, double* change) override {
+    return switching_.way_back(t, x, h, change);
+  }
   bool depends_on_time() const override;
   bool is_to_end() const override { return interruption_.is_asked(); }
 
