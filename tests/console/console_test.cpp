@@ -149,6 +149,28 @@ TEST(Console, TakesAnInitialValueThatIsTurnedInInitialCondition) {
   EXPECT_NEAR(console.value("x"), 0.5 * std::exp(-1), 1e-8);
 }
 
+// What counts how often its group came into initial condition counts no turn of a pot.
+TEST(Console, CountsAModeOnceWhateverIsTurnedInIt) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("visits", R"toml([outputs]
+out = {}
+[memories]
+n = 0
+[equations]
+out = "n"
+[[events]]
+when = "in_initial"
+set = { n = "n + 1" }
+)toml");
+  Console console(diagram_of(std::string(kDecay) + "n = { type = \"visits\" }\n"), library);
+  console.set_mode(OperatingMode::initial);
+  console.advance(1);
+  EXPECT_EQ(console.value("n"), 1);
+  console.turn("x.initial", "0.5");
+  console.advance(2);
+  EXPECT_EQ(console.value("n"), 1);
+  EXPECT_EQ(console.value("x"), 0.5);
+}
+
 // A clock that is turned goes on from its last pulse: one at 10 s, then each 2 s (at 12 s), or each half a
 // second.
 TEST(Console, TurnsAClockWhileItRuns) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/network/assembly/event_assembly.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include <oblique/diagram/names.h>
 #include <oblique/network/assembly/mode_assembly.h>
 
 namespace oblique::network {
@@ -23,6 +25,17 @@ std::vector<Event::Action> actions_of(Assembly& a, std::size_t block,
     actions.push_back(done);
   }
   return actions;
+}
+
+/// Whether an event puts something somewhere because its group is in a mode, so that it may be put there
+/// again: none that counts.
+bool puts_by_mode(const Assembly& a, std::size_t block, const diagram::EventRule& rule) {
+  if (rule.when.kind != text::Expression::Kind::name || !mode_node(a, block, rule.when.name)) return false;
+  return std::none_of(rule.actions.begin(), rule.actions.end(), [](const diagram::EventAction& action) {
+    const auto read = diagram::names_in(action.value);
+    return std::any_of(read.begin(), read.end(),
+                       [&](const text::Expression* name) { return name->name == action.target; });
+  });
 }
 
 }  // namespace
@@ -73,7 +86,7 @@ void make_events(Assembly& a) {
     event.block = a.diagram.blocks[block].path;
     event.at_start = rule->at_start;
     event.before_start = rule->before_start;
-    event.of_mode = rule->when.kind == text::Expression::Kind::name && mode_node(a, block, rule->when.name);
+    event.of_mode = puts_by_mode(a, block, *rule);
     event.condition = a.built(block, rule->when, rule->place, "an event's 'when'");
     event.actions = actions_of(a, block, rule->actions);
     if (!rule->piling_up.empty()) {

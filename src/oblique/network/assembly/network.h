@@ -72,7 +72,7 @@ struct Event {
   std::vector<Action> actions;
   std::optional<std::size_t> piling_up =
       std::nullopt;      ///< the event that takes its place where it comes ever faster
-  bool of_mode = false;  ///< the condition is that its group is in a mode
+  bool of_mode = false;  ///< it puts something somewhere because its group is in a mode
 };
 
 /// A quantity that is defined by an equation: residual = 0.
