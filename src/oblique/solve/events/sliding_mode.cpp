@@ -540,7 +540,7 @@ bool SlidingMode::way_back(double t, const double* x, double h, double* change) 
   std::vector<double> weights;
   for (const SlideSide& side : sides_) weights.push_back(side.weight);
   if (!find_shares(kAnyRate)) return false;
-  const double whole = std::min(h, span_ / kReturn);  // no farther than to the surface
+  const double whole = std::min(h, span_ / kReturn);  // at most the whole way
   std::fill(change, change + program_.n_states(), 0.0);
   for (std::size_t k = 0; k < sides_.size(); ++k) {
     const SlideSide& side = sides_[k];
