@@ -35,7 +35,6 @@ Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diag
     if (k > 0 && options.on_restart) options.on_restart();
     Observed observed;
     Run result;
-    failed = false;
     try {
       result = run_once(program, diagram, finer, loop_start, refinement, true, observed);
     } catch (const SolveError&) {  // what was not seen may be why
