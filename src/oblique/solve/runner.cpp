@@ -163,11 +163,12 @@ Unseen Runner::unseen() const {
 }
 
 StartOutcome Runner::outcome_of_start() {
-  StartOutcome outcome{std::vector<double>(program_.unknowns().size()),
-                       std::vector<double>(program_.n_signals())};
+  StartOutcome outcome{
+      std::vector<double>(program_.unknowns().size()), std::vector<double>(program_.n_signals()), {}};
   settle_start(start_parts(), begin_, states_);
   for (std::size_t u = 0; u < outcome.unknowns.size(); ++u) outcome.unknowns[u] = workspace_.unknown(u);
   switching_.signals(begin_, states_.data(), outcome.signals.data());
+  outcome.runs_away = switching_.loops_that_run_away(begin_, states_);
   return outcome;
 }
 

@@ -189,6 +189,48 @@ TEST(LoopJumps, OfSignsThatReadEachOtherAreTold) {
   }
 }
 
+// q = b q comes to 0 whichever way the comparator stands that is b: its own 0.3 b holds it on either side.
+TEST(LoopJumps, OfASwitchThatStandsOtherwiseWithTheSameUnknownsAreTold) {
+  for (const std::string& blocks :
+       both_orders({R"(d = { type = "diode", in = "0.3*q" })",
+                    R"(b = { type = "comparator", in = ["d", "0.3*b"], low = -0.25, high = 1.0625 })",
+                    R"(q = { type = "multiplier", x = "-0.5*d", y = "0.5*b" })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 2});
+    ASSERT_EQ(result.warnings.size(), 1U) << blocks;
+    EXPECT_THAT(result.warnings[0].what,
+                AllOf(HasSubstr(" has several solutions: at t = 0 s the run begins with b = "),
+                      HasSubstr("-0.25"), HasSubstr("1.0625")));
+  }
+}
+
+// One side alone of the latch of two signs leaves z = min(−4.9 z², 0.3 sign) a solution: there z rests at 0,
+// and the elements run away from the other one, −1/4.9.
+TEST(LoopJumps, GoFromTheGuessWhereAnotherLoopHasToBeginElsewhere) {
+  for (const std::string& blocks :
+       both_orders({R"(q = { type = "squarer", in = "-1.7*z" })",
+                    R"(z = { type = "minimum", x = "-1.7*q", y = "0.3*a" })",
+                    R"(a = { type = "sign", in = "b" })", R"(b = { type = "sign", in = "0.5*a" })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 2});
+    EXPECT_NEAR(row_values(result, "z").back(), 0, kNewton) << blocks;
+  }
+}
+
+// A pulse at t = 0 closes m = 4 sin m + 1.2, and m goes up from 0 to its root; Newton's method alone would
+// find the one at −0.41 first, at which the counter counts.
+TEST(LoopJumps, GoWhereTheirElementsTakeThemBeforeWhatFollowsAtTheStartIsServed) {
+  double truth = 2;
+  for (int k = 0; k < 200; ++k) truth += 0.1 * (4 * std::sin(truth) + 1.2 - truth);
+  for (const std::string& blocks : both_orders(
+           {R"(one = { type = "constant" })", R"(p = { type = "pulse-train", period = 2, width = 1.5 })",
+            R"(s = { type = "sine", in = "-m" })", R"(y = { type = "summer", in = ["s", "-0.3*one"] })",
+            R"(m = { type = "multiplier", x = "-4*y", y = "p" })",
+            R"(n = { type = "counter", clock = "-2*m" })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 2});
+    EXPECT_NEAR(row_values(result, "m").back(), truth, kNewton) << blocks;
+    EXPECT_EQ(row_values(result, "n.out").back(), 0) << blocks;
+  }
+}
+
 // A register of two stores that lies at the level with which it is compared: nothing closes the loop, and at
 // its level the comparison does not hold.
 TEST(LoopJumps, OfARegisterAtItsLevelAreNotTold) {
@@ -231,18 +273,23 @@ TEST(LoopJumps, OfALatchThatIsSetAreItsOwn) {
 }
 
 // y = clip(2 y + f) has three solutions at f = 0. The guess is the one in the middle, exactly, from which the
-// elements would run away: it stays there, and the others are told of.
-TEST(LoopJumps, AreToldWhereALoopBeginsExactlyOnAnUnstableSolution) {
-  const Compiled made(R"toml(f = { type = "time-function", formula = "1.5*sin(time)" }
-s = { type = "summer", in = ["2*y", "f"] }
-y = { type = "limiter", in = "s" }
-)toml");
-  const auto result = testing::run_of(made, {.until = 0.5});
-  ASSERT_EQ(result.warnings.size(), 1U);
-  EXPECT_EQ(
-      result.warnings[0].what,
-      "the algebraic loop of 's', 'y' has several solutions: at t = 0 s the run begins with s = 0, and -2 "
-      "is another; nothing in the diagram chooses between them");
+// elements would run away: it begins at another, and is told of, be they near or beyond the points from which
+// they are sought.
+TEST(LoopJumps, LeaveAnUnstableSolutionThatIsExactlyTheGuess) {
+  for (const int gain : {2, 10}) {
+    const Compiled made(fmt::format(R"toml(f = {{ type = "time-function", formula = "1.5*sin(time)" }}
+s = {{ type = "summer", in = ["{}*y", "f"] }}
+y = {{ type = "limiter", in = "s" }}
+)toml",
+                                    gain));
+    const auto result = testing::run_of(made, {.until = 0.5});
+    EXPECT_EQ(std::abs(row_values(result, "y").front()), 1);
+    ASSERT_EQ(result.warnings.size(), 1U);
+    EXPECT_EQ(result.warnings[0].what,
+              fmt::format("the algebraic loop of 's', 'y' has several solutions: at t = 0 s the run begins "
+                          "with s = -{0}, and {0} is another; nothing in the diagram chooses between them",
+                          gain));
+  }
 }
 
 /// Of an ideal amplifier behind a step from `from` to `to` at t = 0.5: what it gives before and after.

@@ -140,15 +140,20 @@ void LoopJumps::begin() {
   for (Watched& watched : watched_) watched.stable = true;
 }
 
-void LoopJumps::note(double t, std::span<const double> x) {
-  if (!any_goes_) return;
-  std::vector<bool> stable;
+std::vector<bool> LoopJumps::run_away(double t, std::span<const double> x) {
+  std::vector<bool> found(program_.loops().size(), false);
   for (const Watched& watched : watched_) {
     const auto here = watched.goes ? pull(watched, t, x, workspace_) : std::nullopt;
-    stable.push_back(!here || rests(watched, here->rates));
+    found[watched.loop] = here && !rests(watched, here->rates);
   }
+  return found;
+}
+
+void LoopJumps::note(double t, std::span<const double> x) {
+  if (!any_goes_) return;
+  const std::vector<bool> runs_away = run_away(t, x);
   begin();
-  for (std::size_t k = 0; k < watched_.size(); ++k) watched_[k].stable = stable[k];
+  for (Watched& watched : watched_) watched.stable = !runs_away[watched.loop];
 }
 
 void LoopJumps::place(std::size_t loop, const std::vector<double>& unknowns, double t,
@@ -160,9 +165,13 @@ void LoopJumps::place(std::size_t loop, const std::vector<double>& unknowns, dou
 
 void LoopJumps::place(std::size_t loop, SwitchPlacing& placing, const std::vector<double>& unknowns, double t,
                       std::span<const double> x) {
+  std::vector<double> guesses;
+  for (std::size_t u = 0; u < program_.unknowns().size(); ++u) guesses.push_back(workspace_.unknown(u));
   workspace_.hold_loop(loop, t, unknowns, true);
   placing.place(t, x.data(), workspace_, &thresholds_);
   workspace_.hold_loop(loop, std::numeric_limits<double>::quiet_NaN(), {}, false);
+  // As the switches stood on the way, the other loops may have gone anywhere.
+  for (std::size_t u = 0; u < guesses.size(); ++u) workspace_.set_unknown(u, guesses[u]);
 }
 
 void LoopJumps::place_at_guesses(double t, std::span<const double> x) {

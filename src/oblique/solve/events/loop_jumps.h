@@ -34,6 +34,8 @@ class LoopJumps {
   LoopJumps(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
             const Thresholds& thresholds);
 
+  /// Of each loop of the program: whether it is such a one whose elements would leave the solution at (t, x).
+  std::vector<bool> run_away(double t, std::span<const double> x);
   /// Whether there is any such loop.
   bool any() const { return any_goes_; }
   /// Notes the guesses from which the loops begin.

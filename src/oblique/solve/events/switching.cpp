@@ -79,6 +79,11 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     first = false;
     settling_.begin();
     if (active() && settling_.settle(t, x)) return true;
+    // What a loop would be led to by an event may hang on where it goes before.
+    if (loops_go && loop_jumps_.any()) {
+      if (loop_jumps_.settle(t, x)) return true;
+      if (active()) event_functions_.evaluate(t, x, location_.announced());
+    }
     const auto effect = active() ? serve_events(t, x, starting) : std::nullopt;
     starting = starting && (!effect || effect->tables || effect->before_start);
     takes = takes && (!effect || !effect->sets_states);
@@ -86,7 +91,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
       log_.forget_choices();
       return true;
     }
-    return std::exchange(loops_go, false) && loop_jumps_.settle(t, x);
+    return false;
   };
   loop_jumps_.place_at_guesses(t, x);
   Circle circle;

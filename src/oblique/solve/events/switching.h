@@ -52,6 +52,10 @@ class Switching {
                   std::span<const double> x) {
     loop_jumps_.place(loop, unknowns, t, x);
   }
+  /// Of each algebraic loop: whether its elements would leave the solution at (t, x). (See LoopJumps.)
+  std::vector<bool> loops_that_run_away(double t, std::span<const double> x) {
+    return loop_jumps_.run_away(t, x);
+  }
 
   /// Settles switches and events at the start of the run, and the states that start from signals.
   /// `bring_to_rest` is called whenever something has changed that servo loops may follow; it throws

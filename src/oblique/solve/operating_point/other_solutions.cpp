@@ -24,17 +24,29 @@ constexpr std::size_t kMostEvaluations = 300'000;
 
 LoopStart point(const network::Program& program, std::size_t loop, int k) {
   const std::size_t n = program.loops()[loop].unknowns.size();
-  LoopStart start{loop, text::even_point(k, n)};
+  LoopStart start{loop, text::even_point(k, n), false};
   for (double& unknown : start.unknowns) unknown = kReach * (2 * unknown - 1);
   return start;
 }
 
-/// An unknown of the loop that differs between two solutions.
-std::optional<std::size_t> changed(const network::Program& program, std::size_t loop,
-                                   const std::vector<double>& solution, const std::vector<double>& other) {
+/// What stands otherwise in another solution.
+struct Difference {
+  std::string name;
+  double here = 0, there = 0;
+};
+
+/// An unknown of the loop that differs between two solutions, or a signal where only switches on it do.
+std::optional<Difference> find_difference(const network::Program& program, std::size_t loop,
+                                          const StartOutcome& solution, const StartOutcome& other) {
   constexpr double kOther = 1e-4;  // of 1 + |z|: far beyond what is left of Newton's method at a double root
+  const auto differ = [](double a, double b) { return std::abs(b - a) > kOther * (1 + std::abs(a)); };
   for (const std::size_t u : program.loops()[loop].unknowns) {
-    if (std::abs(other[u] - solution[u]) > kOther * (1 + std::abs(solution[u]))) return u;
+    const double here = solution.unknowns[u], there = other.unknowns[u];
+    if (differ(here, there)) return Difference{program.unknowns()[u].name, here, there};
+  }
+  for (std::size_t s = 0; s < solution.signals.size(); ++s) {
+    const double here = solution.signals[s], there = other.signals[s];
+    if (differ(here, there)) return Difference{program.signal_names()[s], here, there};
   }
   return std::nullopt;
 }
@@ -53,15 +65,14 @@ bool leaves_reach(const network::Program& program, std::size_t loop, const std::
 }
 
 text::Diagnostic several_solutions(const network::Program& program, std::size_t loop, double t,
-                                   const std::string& file, const std::string& unknown, double here,
-                                   double there) {
+                                   const std::string& file, const Difference& difference) {
   std::vector<std::string> members;
   for (const std::string& member : program.loops()[loop].members) members.push_back("'" + member + "'");
   return {
       {file, {}},
       fmt::format("the algebraic loop of {} has several solutions: at t = {:.6g} s the run begins with {} = "
                   "{:.6g}, and {:.6g} is another; nothing in the diagram chooses between them",
-                  shortened(std::move(members)), t, unknown, here, there),
+                  shortened(std::move(members)), t, difference.name, difference.here, difference.there),
       {},
       "put a servo amplifier with an 'initial', or a lag, into the loop: where it starts from chooses"};
 }
@@ -87,18 +98,29 @@ StartChoice choose_start(const network::Program& program, double t, const std::s
   for (const std::size_t loop : blind) {
     for (int k = 1; k <= kPoints && !solution && evaluations < most_evaluations; ++k) {
       choice.from = point(program, loop, k);
+      choice.from.goes = true;
       solution = outcome(choice.from);
     }
   }
   if (!solution) return {};
   for (const std::size_t loop : blind) {
+    for (int k = 1; k <= kPoints && solution->runs_away[loop] && evaluations < most_evaluations; ++k) {
+      LoopStart from = point(program, loop, k);
+      from.goes = true;
+      auto other = outcome(from);
+      if (!other || other->runs_away[loop]) continue;
+      choice.from = std::move(from);
+      solution = std::move(other);
+    }
+  }
+  for (const std::size_t loop : blind) {
+    const bool is_far = leaves_reach(program, loop, solution->signals);
     for (int k = 1; k <= kPoints && evaluations < most_evaluations; ++k) {
       const auto other = outcome(point(program, loop, k));
-      if (!other || leaves_reach(program, loop, other->signals)) continue;
-      const auto unknown = changed(program, loop, solution->unknowns, other->unknowns);
-      if (!unknown) continue;
-      choice.warnings.push_back(several_solutions(program, loop, t, file, program.unknowns()[*unknown].name,
-                                                  solution->unknowns[*unknown], other->unknowns[*unknown]));
+      if (!other || (!is_far && leaves_reach(program, loop, other->signals))) continue;
+      const auto difference = find_difference(program, loop, *solution, *other);
+      if (!difference) continue;
+      choice.warnings.push_back(several_solutions(program, loop, t, file, *difference));
       break;
     }
   }

@@ -16,11 +16,13 @@ namespace oblique::solve {
 struct LoopStart {
   std::optional<std::size_t> loop;
   std::vector<double> unknowns;  ///< of that loop
+  bool goes = true;              ///< whether loops without amplifiers go where their elements take them
 };
 
 /// What a start leads to.
 struct StartOutcome {
   std::vector<double> unknowns, signals;  ///< of the whole program
+  std::vector<bool> runs_away;            ///< of each loop: its elements do not stay there
 };
 
 /// One start: what it leads to, nothing where it fails, and how often the equations of loops were evaluated
@@ -45,7 +47,8 @@ struct StartChoice {
 /// `start` makes a whole start of its own, with all switches settled and all amplifiers at rest, and gives
 /// the unknowns of the program as it leaves them; nothing where it fails. So only what the whole diagram
 /// agrees with is a solution, and a loop counts whose choice decides where amplifiers come to rest. Where the
-/// guesses lead to no start the first point that does is chosen.
+/// guesses lead to no start, or to one where elements would run away, the first point from which the loops go
+/// to a better one is chosen.
 StartChoice choose_start(const network::Program& program, double t, const std::string& file,
                          const std::function<StartAttempt(const LoopStart&)>& start);
 

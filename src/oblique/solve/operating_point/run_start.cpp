@@ -62,8 +62,7 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
                                 : bring_to_rest(program, parts.workspace, t, states, file);
       parts.workspace.pass_failing_loops(false);
     };
-    // From another start others are sought.
-    parts.switching.start(t, states, rest, !parts.loop_start.loop);
+    parts.switching.start(t, states, rest, parts.loop_start.goes);
     if (!parts.switching.signals(t, states.data(), signals.data()))
       throw loop_error(program, parts.workspace.trouble(), t, file);
   };
