@@ -20,8 +20,8 @@ const network::Program& blind_loop() {
   return made.program;
 }
 
-StartOutcome at(double y) {
-  return {{y}, {y}};
+StartOutcome at(double y, bool runs_away = false) {
+  return {{y}, {y}, {runs_away}};
 }
 
 /// All points at which a start of the loop itself is tried, where none but the guess has a solution.
@@ -67,6 +67,26 @@ TEST(OtherSolutions, AreNotTheSameOneNorBeyondTheReach) {
   }
 }
 
+// Where the run begins beyond them another one there is as near.
+TEST(OtherSolutions, AreToldBeyondTheReachOfOneThatIsItself) {
+  const auto start = [&](const LoopStart& from) { return StartAttempt{at(from.loop ? -8 : 8)}; };
+  EXPECT_EQ(choose_start(blind_loop(), 0, "d.toml", start).warnings.size(), 1U);
+}
+
+// What the elements leave is no start while there is another, from wherever the loops have gone to that.
+TEST(OtherSolutions, GiveTheStartWhereTheElementsWouldLeaveTheOneOfTheGuesses) {
+  for (const bool every : {false, true}) {
+    const auto start = [&](const LoopStart& from) {
+      const bool stays = !every && from.loop && from.goes && from.unknowns.at(0) > 0;
+      return StartAttempt{stays ? at(1) : at(0, true)};
+    };
+    const StartChoice choice = choose_start(blind_loop(), 0, "d.toml", start);
+    EXPECT_EQ(choice.from.loop.has_value(), !every);
+    EXPECT_TRUE(choice.from.goes);
+    EXPECT_EQ(choice.warnings.size(), every ? 0U : 1U);
+  }
+}
+
 // A start in which loops fail all the way may take a second; refusals are not to take a minute.
 TEST(OtherSolutions, AreSoughtFromFewerPointsWhereStartsTakeVeryManyEvaluations) {
   for (const bool found : {true, false}) {
@@ -89,6 +109,7 @@ TEST(OtherSolutions, GiveTheStartWhereTheGuessesGiveNone) {
     const StartChoice choice = choose_start(blind_loop(), 0, "d.toml", start);
     EXPECT_TRUE(choice.warnings.empty());
     EXPECT_EQ(choice.from.unknowns, std::vector<double>{point});
+    EXPECT_TRUE(choice.from.goes);
   }
   const auto none = [](const LoopStart&) -> StartAttempt { return {}; };
   EXPECT_FALSE(choose_start(blind_loop(), 0, "d.toml", none).from.loop);

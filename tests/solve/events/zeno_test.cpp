@@ -247,6 +247,19 @@ set = { v = "-v" }
   }
 }
 
+// v passes 0.5 once, at 2/3 s and to rounding, and puts y back to the 1 that it has: v goes on, whatever was
+// set.
+TEST(Zeno, IsNotWhatLeadsOnWhereNothingHasSetIt) {
+  const oblique::solve::Run run = run_of(Compiled(R"toml(one = { type = "constant" }
+v = { type = "integrator", in = ["one"], rate = 0.75 }
+zero = { type = "constant", value = 0 }
+s = { type = "servo-amplifier", in = ["s", "y"], gain = 8000, bandwidth = 6.5 }
+y = { type = "integrator", in = ["zero"], set = "v", initial = 1, rate = 0.5085693359375 }
+)toml"),
+                                         {.until = 4, .tolerance = 1e-9});
+  EXPECT_EQ(row_values(run, "y").back(), 1);
+}
+
 // What is set may also end what led to it: then nothing comes again, and put on its level the state is not
 // above it, also where it leaves that level no faster than its third power.
 TEST(Zeno, IsNotWhereASetStateStays) {

@@ -23,13 +23,14 @@ bool sets_states(const network::Event& event) {
 
 EventActions::EventActions(const network::Program& program, network::Workspace& workspace,
                            const EventFunctions& event_functions, const SlidingMode& slide,
-                           const SwitchSettling& settling, EventLog& log, double span,
-                           const std::string& file)
+                           const SwitchSettling& settling, IndependentUnits& independent, EventLog& log,
+                           double span, const std::string& file)
     : program_(program),
       workspace_(workspace),
       event_functions_(event_functions),
       slide_(slide),
       settling_(settling),
+      independent_(independent),
       log_(log),
       span_(span),
       file_(file),
@@ -99,6 +100,15 @@ void EventActions::end(double t) {
   for (std::size_t e = 0; e < paces_.size(); ++e) look_for_lost(e, t);
 }
 
+/// Whether something that came at this instant has set what the event function of a switch ever depends on.
+bool EventActions::is_led_by_what_came(std::size_t s) {
+  const std::uint32_t unit = program_.switch_structure().unit[s];
+  for (std::size_t e = 0; e < came_.size(); ++e) {
+    if (came_[e] && independent_.acts(program_.events()[e], unit)) return true;
+  }
+  return false;
+}
+
 /// Whether the condition of an event that came at this instant holds because what it set leads back to it: it
 /// hangs on a switch whose event function is at zero, and neither stays there nor leaves that side (a ball
 /// that bounces where something else has its event). (Once states have jumped, at zero to rounding: what has
@@ -120,6 +130,7 @@ bool EventActions::comes_at_once(std::size_t event, double t, std::span<const do
     const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
     const double position = workspace_.discrete_state(discrete_state);
     if (position == 1 ? rates[s] < 0 : rates[s] > 0) continue;  // on its way to the other side
+    if (!is_led_by_what_came(s)) continue;
     workspace_.set_discrete_state(discrete_state, 1 - position);
     const auto there = program_.event_functions(t, x.data(), others.data(), workspace_);
     hangs = there && !there->condition(event);

@@ -15,6 +15,7 @@
 #include <oblique/solve/events/switch_settling.h>
 #include <oblique/solve/events/uncertain_readings.h>
 #include <oblique/solve/readings/event_functions.h>
+#include <oblique/solve/readings/independent_units.h>
 
 namespace oblique::solve {
 
@@ -24,7 +25,8 @@ class EventActions {
   /// All must outlive this; `span` is the length of the run [s], and `file` names the diagram in messages.
   EventActions(const network::Program& program, network::Workspace& workspace,
                const EventFunctions& event_functions, const SlidingMode& slide,
-               const SwitchSettling& settling, EventLog& log, double span, const std::string& file);
+               const SwitchSettling& settling, IndependentUnits& independent, EventLog& log, double span,
+               const std::string& file);
 
   /// Where the run ends [s]: Zeno behaviour that would be complete later is none.
   void end_at(double t) { end_ = t; }
@@ -67,6 +69,7 @@ class EventActions {
   };
 
   std::vector<Come> look(double t, std::span<const double> x, bool starting);
+  bool is_led_by_what_came(std::size_t s);
   bool comes_at_once(std::size_t event, double t, std::span<const double> x);
   bool is_any_to_pile_up(double t) const;
   bool is_zeno(const Come& come, double t);
@@ -80,6 +83,7 @@ class EventActions {
   const EventFunctions& event_functions_;
   const SlidingMode& slide_;
   const SwitchSettling& settling_;
+  IndependentUnits& independent_;
   EventLog& log_;
   double span_;
   double end_ = std::numeric_limits<double>::infinity();  ///< [s] of the run

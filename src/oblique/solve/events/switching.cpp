@@ -36,7 +36,7 @@ Switching::Switching(const network::Program& program, network::Workspace& worksp
                 span),
       resting_(program, workspace, slide_, event_functions_, location_.announced(), log_, span),
       wrong_sides_(program, workspace, slide_, settling_, event_functions_, log_, span),
-      actions_(program, workspace, event_functions_, slide_, settling_, log_, span, file),
+      actions_(program, workspace, event_functions_, slide_, settling_, independent_, log_, span, file),
       faint_turns_(program, workspace, span),
       loop_jumps_(program, workspace, slide_, event_functions_.thresholds()),
       lone_states_(lone_states(program)) {
