@@ -65,6 +65,19 @@ f = { type = "multiplier", in = ["s", "m"] }
   EXPECT_NEAR(row_values(result, "x").back(), 0.1624416511, 1e-6);  // a hundred tolerances
 }
 
+// A Schmitt trigger leaves its limit where u falls below −1/2, exactly from its equilibrium; but u goes on,
+// and drives it to the other limit within a nanosecond: no error decides where it goes, nor when.
+TEST(UnseenGrowth, IsNotWhatTheTimeDrives) {
+  const auto result = run_of(Compiled(R"toml(u = { type = "time-function", formula = "1.05*sin(2*time)" }
+y = { type = "servo-amplifier", in = ["-u", "-0.5*y"], gain = 1e6, bandwidth = 1000, limit = 1, initial = 1 }
+)toml"),
+                             {.until = 3, .samples = 301});
+  EXPECT_TRUE(result.warnings.empty());
+  const double turns = (std::numbers::pi + std::asin(0.5 / 1.05)) / 2;
+  const auto t = row_values(result, "t"), y = row_values(result, "y");
+  for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(y[k], t[k] < turns ? 1 : -1, 1e-7) << t[k];
+}
+
 // x″ = x from x = 0, x′ = 1e-11: neither state grows alone. x = 1e-11 sinh t.
 TEST(UnseenGrowth, IsSeenInPairs) {
   const oblique::solve::Run result =

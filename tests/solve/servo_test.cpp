@@ -209,5 +209,21 @@ TEST(ServoStability, OfALargeRingCostsNoCubes) {
   EXPECT_NEAR(row_values(result, "s7").back(), 1 / (3 - 2 + 1e-4), 1e-9);  // s(3 − 2) − 1 = −s/μ
 }
 
+// Behind the fold of sin y = u, at t = 0.63, it runs to its limit at 1e9 machine units a second: the clock
+// shows no moment nearer to the limit than 1e-7, and yet it stands there, and not beside it.
+TEST(ServoAmplifier, StandsAtItsLimitHoweverFastItCame) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "1.05*sin(2*time)" }
+s = { type = "sine", in = "y" }
+y = { type = "servo-amplifier", in = ["s", "-u"], gain = 1e6, bandwidth = 1000, limit = 5 }
+)toml");
+  using diagram::IntegrationMethod;
+  for (const auto method : {IntegrationMethod::bdf, IntegrationMethod::adams, IntegrationMethod::rodas}) {
+    const auto result = run_of(made, {.until = 3, .samples = 31, .method = method});
+    const std::vector<double> y = row_values(result, "y");
+    for (std::size_t row = 7; row <= 21; ++row) EXPECT_EQ(y[row], 5) << diagram::method_name(method) << row;
+    for (std::size_t row = 23; row <= 30; ++row) EXPECT_EQ(y[row], -5) << diagram::method_name(method) << row;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

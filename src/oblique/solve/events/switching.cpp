@@ -278,8 +278,9 @@ void Switching::put_on_levels(double t, std::vector<double>& x) {
     here.event_function_rates(rates.data(), still.data());
     rates[*state] = 1;
     here.event_function_rates(rates.data(), moving.data());
-    const double off = event_functions_[s] / (moving[s] - still[s]);
-    if (still[s] != 0 || !(std::abs(off) < kBeside)) continue;
+    const double moved = moving[s] - still[s], off = event_functions_[s] / moved;
+    const double beside = kBeside + off_at_zero(t, slide_.fastest_drive(u) / moved);
+    if (still[s] != 0 || !(std::abs(off) < beside)) continue;
     if (!slide_.is_held(u) && !slide_.comes_back(u, *state, t, x)) continue;
     x[*state] -= off;
     still_.push_back(*state);

@@ -116,6 +116,21 @@ bool GrowthWatch::grows_by_differences(double t, std::span<const double> x,
   return matrix.eigenvalues().real().maxCoeff() >= rate / 2;
 }
 
+/// How far from the equilibrium what the time does would take these states in a time constant of their
+/// growth, where they are [machine unit]: with f = rate · (x − e) they grow as (x − e) + e′/rate does. An
+/// amplifier that leaves its limit begins at e exactly, and yet nothing but e′ decides where it goes.
+double GrowthWatch::driven_distance(double t, std::span<const double> x,
+                                    const std::vector<std::size_t>& states, double rate) {
+  const double dt = std::min(step_, 1 / rate);
+  std::vector<double> now(x.size()), before(x.size());
+  if (!system_.derivatives(t - dt, x.data(), before.data()) || !system_.derivatives(t, x.data(), now.data()))
+    return 0;
+  double distance = 0;
+  for (const std::size_t i : states)
+    distance = std::max(distance, std::abs(now[i] + (now[i] - before[i]) / (dt * rate)) / rate);
+  return distance;
+}
+
 /// Whether errors move the time at which these states leave the equilibrium by less than the tolerance shows:
 /// a real amplifier goes from one limit to the other at once, whatever it started from.
 bool GrowthWatch::leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states,
@@ -145,6 +160,7 @@ void GrowthWatch::judge(double t, std::span<const double> x, double step) {
       near = near && change_[i] < part * near_distance(i, x[i]);
     }
     if (!near) continue;
+    distance = std::max(distance, driven_distance(t, x, group.states, rate));
     const bool in_relative = size > 2 * distance;
     double least = distance;
     bool much = false, told = false;

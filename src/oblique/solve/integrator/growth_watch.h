@@ -44,6 +44,8 @@ class GrowthWatch {
  private:
   double near_distance(std::size_t i, double x) const;  ///< [machine unit]
   bool is_near_rest(std::span<const double> x);
+  double driven_distance(double t, std::span<const double> x, const std::vector<std::size_t>& states,
+                         double rate);
   bool leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states, double rate,
                       double distance) const;
   void judge(double t, std::span<const double> x, double step);
