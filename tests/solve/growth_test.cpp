@@ -78,6 +78,34 @@ y = { type = "servo-amplifier", in = ["-u", "-0.5*y"], gain = 1e6, bandwidth = 1
   for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(y[k], t[k] < turns ? 1 : -1, 1e-7) << t[k];
 }
 
+// y = arcsin u by an amplifier that stands at its limit of 2 behind the fold: where it leaves that, at u =
+// sin 2, implicit steps longer than the 1e-9 s of its growth would lead it along π − arcsin u, beyond its
+// limit, to any tolerance above the 1e-9 that it begins from.
+TEST(UnseenGrowth, IsNotOutrunByImplicitSteps) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "1.05*sin(2*time)" }
+s = { type = "sine", in = "y" }
+y = { type = "servo-amplifier", in = ["s", "-u"], gain = 1e6, bandwidth = 1000, limit = 2 }
+)toml");
+  using diagram::IntegrationMethod;
+  for (const auto method : {IntegrationMethod::bdf, IntegrationMethod::rodas}) {
+    for (const double tolerance : {1e-4, 1e-6}) {
+      const auto result =
+          run_of(made, {.until = 1.9, .tolerance = tolerance, .samples = 191, .method = method});
+      if (method == IntegrationMethod::bdf) {
+        EXPECT_TRUE(result.warnings.empty()) << tolerance;
+      }
+      const double fold = std::asin(1 / 1.05) / 2,
+                   leaves = (std::numbers::pi - std::asin(std::sin(2) / 1.05)) / 2;
+      const auto t = row_values(result, "t"), y = row_values(result, "y");
+      for (std::size_t k = 0; k < t.size(); ++k) {
+        if (std::abs(t[k] - fold) < 0.02) continue;  // errors grow there as the root of the distance falls
+        const double truth = t[k] > fold && t[k] < leaves ? 2 : std::asin(1.05 * std::sin(2 * t[k]));
+        EXPECT_NEAR(y[k], truth, 10 * tolerance) << diagram::method_name(method) << " at " << t[k];
+      }
+    }
+  }
+}
+
 // x″ = x from x = 0, x′ = 1e-11: neither state grows alone. x = 1e-11 sinh t.
 TEST(UnseenGrowth, IsSeenInPairs) {
   const oblique::solve::Run result =

@@ -7,6 +7,8 @@
 
 #include <Eigen/Dense>
 
+#include <oblique/solve/events/time_resolution.h>
+
 namespace oblique::solve {
 namespace {
 
@@ -41,10 +43,13 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, doub
       distance_(system.size()),
       near_(system.size()),
       told_(system.size()),
-      held_since_(system.size()) {}
+      held_since_(system.size()),
+      stood_(system.size()) {}
 
 void GrowthWatch::restart(double t, std::span<const double> x) {
-  if (before_.empty()) judged_ = t;
+  if (before_.empty() || std::all_of(growth_.begin(), growth_.end(), [](double g) { return g == 0; }))
+    judged_ = t;
+  for (std::size_t i = 0; i < before_.size() && t > time_; ++i) stood_[i] = x[i] == before_[i];
   // Where segments are short, growth goes on through many of them: but for that of states that have jumped.
   for (std::size_t i = 0; i < before_.size(); ++i) {
     if (!(std::abs(x[i] - before_[i]) < near_distance(i, x[i]))) growth_[i] = 0;
@@ -84,6 +89,39 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
     steps_ = 0;
   }
   std::copy(x.begin(), x.end(), before_.begin());
+}
+
+double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
+  constexpr double kMost = 2;      // in powers of e: what a step of the order of the solver follows
+  constexpr double kFaster = 1.5;  // than what others hold: it is asked again
+  constexpr double kTicks = 1e3;   // of the clock, that growth takes at least
+  const auto is_passed_over = [&](double rate) { return rate * step > kMost; };
+  if (!is_passed_over(system_.own_growth()) || !system_.is_jacobian_exact() ||
+      !system_.jacobian(t, x.data(), jacobian_.data()))
+    return 0;
+  const double own = system_.own_growth();
+  if (!is_passed_over(own) || own <= kFaster * held_own_ || own * kTicks * time_resolution(t) > 1) return 0;
+  std::size_t fastest = 0;
+  const network::SparsePattern& pattern = system_.pattern();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (auto k = pattern.column_starts[i]; k < pattern.column_starts[i + 1]; ++k) {
+      const auto entry = static_cast<std::size_t>(k);
+      if (pattern.rows[entry] == static_cast<std::int64_t>(i) && jacobian_[entry] == own) fastest = i;
+    }
+  }
+  const CoupledModes group = closed_modes(pattern, jacobian_, fastest);
+  double rate = 0;
+  for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
+  if (!is_passed_over(rate)) {
+    held_own_ = own;
+    return 0;
+  }
+  // From an equilibrium that is met exactly nothing grows.
+  std::vector<double> rates(x.size());
+  const bool moves =
+      system_.derivatives(t, x.data(), rates.data()) &&
+      std::any_of(group.states.begin(), group.states.end(), [&](std::size_t i) { return rates[i] != 0; });
+  return moves ? rate : 0;
 }
 
 void GrowthWatch::end() {
@@ -132,14 +170,20 @@ double GrowthWatch::driven_distance(double t, std::span<const double> x,
 }
 
 /// Whether errors move the time at which these states leave the equilibrium by less than the tolerance shows:
-/// a real amplifier goes from one limit to the other at once, whatever it started from.
+/// a real amplifier goes from one limit to the other at once, whatever it started from. What stood at a limit
+/// was known exactly, and no step is longer than its growth takes (see `outrun`): each errs by a part of the
+/// distance that it has come to, so that neither the side is in doubt nor the time by more than that.
 bool GrowthWatch::leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states,
                                  double rate, double distance) const {
-  constexpr double kErrors = 100;  // nearer than so many the side to which it leaves is not known
+  // Nearer than so many errors the side is not known: those of the whole run, or of a few steps.
+  constexpr double kErrors = 100, kErrorsOfSteps = 5;
+  const double most = settings_.relative_tolerance * span_;
+  const bool stood = std::all_of(states.begin(), states.end(), [&](std::size_t i) { return stood_[i]; });
+  if (stood && 1 / rate < most) return true;
   double error = 0;
   for (const std::size_t i : states)
     error = std::max(error, settings_.relative_tolerance * near_distance(i, x[i]) / kNear);
-  return distance > kErrors * error && error / distance / rate < settings_.relative_tolerance * span_;
+  return distance > (stood ? kErrorsOfSteps : kErrors) * error && error / distance / rate < most;
 }
 
 void GrowthWatch::judge(double t, std::span<const double> x, double step) {

@@ -35,6 +35,11 @@ class GrowthWatch {
   /// Looks at the step to (t, x).
   void advance(double t, std::span<const double> x);
 
+  /// The rate of the growth that an implicit step of `step` seconds to (t, x) has passed over [1/s], 0 where
+  /// there is none. Where such a step is longer than growth takes it goes along the branch from which the
+  /// states would run away, as if it held them.
+  double outrun(double t, std::span<const double> x, double step);
+
   /// Looks at the end of the run at what has not been judged.
   void end();
 
@@ -64,7 +69,9 @@ class GrowthWatch {
   int steps_ = 0;                 ///< since it was judged
   long looked_ = 0;               ///< Jacobians
   std::vector<bool> told_;        ///< of each state, whether it is among `found_`
+  std::vector<bool> stood_;       ///< of each state: it stood still before the segment, and was known exactly
   std::vector<long> held_since_;  ///< Jacobian at which its growth was last found to be held by other states
+  double held_own_ = 0;           ///< own growth of a state [1/s] that others have been found to hold
   std::vector<UnseenGrowth> found_;
 };
 

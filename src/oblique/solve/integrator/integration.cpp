@@ -61,7 +61,8 @@ std::unique_ptr<Solver> Integration::make_solver(double t) {
 void Integration::limit_step(double t) {
   if (turning_.any() && !turn_limit_)
     turn_limit_ = turning_.longest_step(t, parts_.states, parts_.segments.end());
-  const double limit = std::min({short_steps_.limit(), turn_limit_.value_or(kNone), places_limit_});
+  const double limit =
+      std::min({short_steps_.limit(), turn_limit_.value_or(kNone), places_limit_, growth_limit_});
   if (limit < kNone || limits_) solver_->limit_step(limit);
   limits_ = limit < kNone;
 }
@@ -95,6 +96,21 @@ bool Integration::turns_too_far(double from, double t) {
   return true;
 }
 
+/// Whether an implicit step has passed over growth: it is then to be taken anew, and no longer than that
+/// takes.
+bool Integration::outruns_growth(double from, double t) {
+  constexpr double kLess = 0.5;
+  if (settings_.method == diagram::IntegrationMethod::adams) return false;
+  const double rate = growth_.outrun(t, solver_->states(), t - from);
+  if (rate == 0) {
+    if (parts_.system.own_growth() * growth_limit_ < kLess) growth_limit_ = kNone;
+    return false;
+  }
+  growth_limit_ = 1 / rate;
+  solver_->restart(from, parts_.states, parts_.segments.end(), parts_.segments.end() - from);
+  return true;
+}
+
 bool Integration::take_step(double& t) {
   constexpr int kMostEnds = 100;  // of branches, one at the other
   const double from = t;
@@ -121,7 +137,7 @@ bool Integration::take_step(double& t) {
     }
   }
   ends_ = 0;
-  if (turns_too_far(from, t)) {
+  if (turns_too_far(from, t) || outruns_growth(from, t)) {
     t = from;
     return false;
   }

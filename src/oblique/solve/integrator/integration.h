@@ -82,6 +82,7 @@ class Integration {
   void watch_places();
   void limit_step(double t);
   bool turns_too_far(double from, double t);
+  bool outruns_growth(double from, double t);
   void look_for_stiffness(double t);
 
   Parts parts_;
@@ -97,6 +98,7 @@ class Integration {
   TurningLoops turning_;
   std::optional<double> turn_limit_;               ///< [s] of the next step, where it is known
   double places_limit_ = kNone;                    ///< [s] of a step, for the places to look at in it
+  double growth_limit_ = kNone;                    ///< [s] of a step, while it would outrun growth
   std::size_t places_ = 0;                         ///< in the last step
   double length_ = 0;                              ///< [s] of the last step
   int ends_ = 0;                                   ///< of branches, since the last step

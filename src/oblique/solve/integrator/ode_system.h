@@ -18,6 +18,9 @@ class OdeSystem {
   virtual bool derivatives(double t, const double* x, double* dxdt) = 0;
   /// df/dx in the order of `pattern`; false as above.
   virtual bool jacobian(double t, const double* x, double* values) = 0;
+  /// How fast a state drives itself away, by the Jacobian that was asked for last: its largest entry ∂f/∂x of
+  /// a state by itself [1/s], 0 where none is positive.
+  virtual double own_growth() const { return 0; }
   /// Whether `jacobian` is df/dx to rounding, and has all its entries; else it is good for Newton's method.
   virtual bool is_jacobian_exact() const { return true; }
   /// Marks the states that a slide at (t, x) may hold at zero: those that its event functions read.
