@@ -145,6 +145,46 @@ until = 20
   }
 }
 
+constexpr const char* kHeldUntilASineRises = R"toml(u = { type = "time-function", formula = "sin(time)" }
+one = { type = "constant" }
+x = { type = "integrator", in = ["one"] }
+)toml";
+
+// The second phase begins where sin t comes to 1/2, within a step, changes nothing, and ends 0.2 s later.
+TEST(Timeline, APhaseEndsByItsTimeThatBeginsWithoutEffect) {
+  for (const char* const mode : {"hold", "initial"}) {
+    const Compiled made(kHeldUntilASineRises, fmt::format(R"toml([timeline]
+phases = [
+  {{ mode = "{0}", until = "u > 0.5" }}, {{ mode = "{0}", for = 0.2 }}, {{ mode = "operate", for = 9 }}
+]
+)toml",
+                                                          mode));
+    const auto result = run_of(made, {.until = 5, .samples = 2});
+    EXPECT_NEAR(row_values(result, "x").back(), 5 - std::numbers::pi / 6 - 0.2, 1e-9);  // that of an event
+  }
+}
+
+// Phases that end by one condition keep one memory of it, under one name, and a run goes on from where it
+// stood.
+TEST(Timeline, PhasesOfOneConditionAreSavedAndGoOn) {
+  const Compiled made(kHeldUntilASineRises, R"toml([timeline]
+phases = [
+  { mode = "hold", until = "u > 0.5" }, { mode = "operate", for = 1 }, { mode = "hold", until = "u > 0.5" }
+]
+cycles = inf
+)toml");
+  RunOptions options;
+  options.until = 20;
+  const oblique::solve::Run whole = run(made.program, made.flat, options);
+  options.until = 8;
+  const oblique::solve::Run first = run(made.program, made.flat, options);
+  options.until = 20;
+  options.from = parse_run_state(to_text(first.state), "state.toml");
+  const oblique::solve::Run second = run(made.program, made.flat, options);
+  EXPECT_NEAR(row_values(second, "x").back(), row_values(whole, "x").back(), 1e-9);
+  EXPECT_GT(row_values(whole, "x").back(), 3);
+}
+
 // x starts from y, and z from x: all three come to 0.8 at once in each initial condition, whatever the order
 // of the rows; x, from −0.2 a second, is at no time near zero, and nothing counts.
 TEST(Timeline, InitialValuesInAChainAreTakenAtOnce) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/network/assembly/mode_assembly.h>
 
+#include <map>
+#include <string>
+
 #include <fmt/format.h>
 
 #include <oblique/network/assembly/switch_assembly.h>
@@ -56,21 +59,26 @@ void define_mode_lines(Assembly& a) {
 }
 
 void define_phase_ends(Assembly& a) {
+  std::map<std::string, NodeId> known;  // phases that end by one condition have one switch
   for (const diagram::FlatPhase& phase : a.diagram.timeline.phases) {
     if (!phase.until) {
       a.network.phase_ends.push_back(a.network.graph.constant(0));
       continue;
     }
     const diagram::FlatCondition& until = *phase.until;
-    const NodeId signal = a.quantities[a.quantity_of(until.signal)].node;
-    const NodeId threshold = a.network.graph.constant(until.threshold);
-    const std::uint32_t discrete_state = a.new_discrete_state("end of a phase", 0);
-    add_switch(a, {discrete_state, "timeline",
-                   fmt::format("{} {} {}", a.diagram.signal_name(until.signal), until.above ? ">" : "<",
-                               until.threshold),
-                   until.above ? a.network.graph.apply(Op::subtract, signal, threshold)
-                               : a.network.graph.apply(Op::subtract, threshold, signal)});
-    a.network.phase_ends.push_back(a.network.graph.discrete_state(discrete_state));
+    const std::string condition = fmt::format("{} {} {}", a.diagram.signal_name(until.signal),
+                                              until.above ? ">" : "<", until.threshold);
+    const auto [end, is_new] = known.try_emplace(condition);
+    if (is_new) {
+      const NodeId signal = a.quantities[a.quantity_of(until.signal)].node;
+      const NodeId threshold = a.network.graph.constant(until.threshold);
+      const std::uint32_t discrete_state = a.new_discrete_state("end of a phase", 0);
+      add_switch(a, {discrete_state, "timeline", condition,
+                     until.above ? a.network.graph.apply(Op::subtract, signal, threshold)
+                                 : a.network.graph.apply(Op::subtract, threshold, signal)});
+      end->second = a.network.graph.discrete_state(discrete_state);
+    }
+    a.network.phase_ends.push_back(end->second);
   }
 }
 

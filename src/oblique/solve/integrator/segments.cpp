@@ -278,6 +278,8 @@ bool Segments::turns_without_effect(double at, std::span<const double> sample_ti
   // And it may have brought the next switch forward that follows the time alone.
   const auto wait = parts_.switching.known_wait(at, parts_.states, EventLocation::Of::ends_of_segments);
   if (wait && at + *wait < end_ - time_resolution(end_)) return false;
+  // Or a phase has begun, which changes nothing at first and ends by the time.
+  if (parts_.clock.end() < end_) return false;
   if (parts_.overloads) parts_.overloads->restart(at, parts_.states);
   return true;
 }
