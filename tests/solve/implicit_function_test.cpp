@@ -3,7 +3,9 @@
 // division, resolution, coupled equations. Each by a real amplifier, by one of infinite bandwidth, and by an
 // ideal one.
 #include <cmath>
+#include <numbers>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "../support/runs.h"
@@ -151,6 +153,32 @@ TEST_P(ImplicitFunction, IsSolvedByEveryAmplifier) {
   EXPECT_NEAR(end_of(circuit, R"(, gain = 1e6, bandwidth = inf)"), circuit.truth, 1e-4);
   // and the lag of some 1/(2π 10 μ) s
   EXPECT_NEAR(end_of(circuit, ""), circuit.truth, 1e-4);
+}
+
+// Where sin y = u has no root any more an amplifier, ideal or real, goes to its limit, however near that is
+// to the fold, and stays until u has fallen below sin(limit).
+TEST(ImplicitFunction, EndsAtTheLimitBehindItsFold) {
+  for (const char* const amplifier :
+       {"gain = inf, bandwidth = inf", "gain = 1e6, bandwidth = inf", "gain = 1e8, bandwidth = 100"}) {
+    for (const double limit : {1.572, 1.6, 2.0, 3.0}) {
+      const Compiled made(fmt::format(R"toml(u = {{ type = "time-function", formula = "1.05*sin(2*time)" }}
+s = {{ type = "sine", in = "y" }}
+y = {{ type = "servo-amplifier", in = ["s", "-u"], {}, limit = {} }}
+)toml",
+                                      amplifier, limit));
+      const auto result = run_of(made, {.until = 3.1, .samples = 311});
+      const auto t = row_values(result, "t"), y = row_values(result, "y");
+      const double fold = std::asin(1 / 1.05) / 2;
+      const double leaves = (std::numbers::pi - std::asin(std::sin(limit) / 1.05)) / 2;
+      for (std::size_t k = 0; k < t.size(); ++k) {
+        const double part = std::fmod(t[k], std::numbers::pi / 2),
+                     sign = t[k] < std::numbers::pi / 2 ? 1 : -1;
+        if (std::abs(part - fold) < 0.02 || std::abs(part - leaves) < 0.001) continue;
+        const double truth = part > fold && part < leaves ? limit : std::asin(1.05 * std::sin(2 * part));
+        EXPECT_NEAR(y[k], sign * truth, 1e-4) << amplifier << ", " << limit << " at " << t[k];
+      }
+    }
+  }
 }
 
 }  // namespace

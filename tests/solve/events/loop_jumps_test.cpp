@@ -292,6 +292,38 @@ y = {{ type = "limiter", in = "s" }}
   }
 }
 
+// An amplifier that runs away from between its limits goes to −1, whatever lies at a level of its own beside
+// it.
+TEST(LoopJumps, GoToALimitBesideWhatIsNotDecidedYet) {
+  const Compiled made(R"toml(u = { type = "constant", value = 0.7 }
+v = { type = "constant" }
+x = { type = "integrator", in = ["v"] }
+s = { type = "comparator", in = ["x"] }
+y = { type = "servo-amplifier", in = ["-0.5*y", "u"], gain = 1e6, bandwidth = inf, limit = 1 }
+)toml");
+  const auto result = run_of(made, {.until = 1, .samples = 2});
+  EXPECT_EQ(row_values(result, "y"), std::vector<double>(2, -1));
+  EXPECT_EQ(row_values(result, "s"), std::vector<double>(2, 1));
+}
+
+// u goes to its other limit where s comes to ±0.8, whatever slides behind it: b, a backlash of 0.1, follows
+// 0.05 behind.
+TEST(LoopJumps, GoFromALimitThatIsLeftToRounding) {
+  const Compiled made(R"toml(s = { type = "sine-source", frequency = 0.3, amplitude = 1 }
+u = { type = "servo-amplifier", in = ["-0.8*u", "s"], gain = inf, bandwidth = inf, limit = 1 }
+b = { type = "backlash", in = "u" }
+)toml");
+  using diagram::IntegrationMethod;
+  for (const auto method : {IntegrationMethod::adams, IntegrationMethod::bdf, IntegrationMethod::rodas}) {
+    const auto result = run_of(made, {.until = 5, .tolerance = 1e-9, .samples = 11, .method = method});
+    const std::vector<double> u = row_values(result, "u"), b = row_values(result, "b");
+    EXPECT_EQ(u[4], -1);  // t = 2; s = 0.8 at 0.4919, −0.8 at 2.1586, 0.8 at 3.8253
+    EXPECT_EQ(u[6], 1);
+    EXPECT_EQ(u[9], -1);
+    EXPECT_NEAR(b[9], -0.95, 1e-9);
+  }
+}
+
 /// Of an ideal amplifier behind a step from `from` to `to` at t = 0.5: what it gives before and after.
 std::pair<double, double> across(const std::string& loop, double from, double to) {
   const std::string blocks = fmt::format(

@@ -133,9 +133,10 @@ BranchWatch::Ahead BranchWatch::look_ahead(double& t, double segment_end, std::v
   return Ahead::end;
 }
 
-void BranchWatch::pass(double t, const std::vector<double>& states) {
+void BranchWatch::pass(double t, const std::vector<double>& states, const std::function<void()>& go) {
   std::vector<double> before, signals(program_.n_signals());
   for (std::size_t u = 0; u < program_.unknowns().size(); ++u) before.push_back(workspace_.unknown(u));
+  go();
   const auto here = program_.signals(t, states.data(), signals.data(), workspace_);
   if (!here) {
     network::Workspace::Trouble trouble = workspace_.trouble();

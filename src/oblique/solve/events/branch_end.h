@@ -61,9 +61,9 @@ class BranchWatch {
   Ahead look_ahead(double& t, double segment_end, std::vector<double>& states, const Interpolant& solution);
 
   /// Lets the amplifiers of all loops go, infinitely fast, to where they rest at (t, states), after a branch
-  /// has ended there. A loop that has no rest in reach but a solution that goes on smoothly keeps to that.
-  /// Throws SolveError for any other. The workspace must not follow branches.
-  void pass(double t, const std::vector<double>& states);
+  /// has ended there; to limits and the like by `go`. A loop that has no rest in reach but a solution that
+  /// goes on smoothly keeps to that. Throws SolveError for any other. The workspace must not follow branches.
+  void pass(double t, const std::vector<double>& states, const std::function<void()>& go);
 
   /// Tells, once of each, of loops that an event at t has left where their amplifiers do not rest; those that
   /// are `told` of already are noted alone; but of none that a slide `mixes`.

@@ -156,6 +156,10 @@ void LoopJumps::note(double t, std::span<const double> x) {
   for (Watched& watched : watched_) watched.stable = !runs_away[watched.loop];
 }
 
+void LoopJumps::expect(std::size_t discrete_state, double position) {
+  if (any_goes_) discrete_states_[discrete_state] = position;
+}
+
 void LoopJumps::place(std::size_t loop, const std::vector<double>& unknowns, double t,
                       std::span<const double> x) {
   for (Watched& watched : watched_) {
@@ -205,6 +209,13 @@ bool LoopJumps::settle(double t, std::span<const double> x) {
 bool LoopJumps::go(double t, std::span<const double> x) {
   return std::any_of(watched_.begin(), watched_.end(),
                      [&](Watched& watched) { return go_from_before(watched, t, x); });
+}
+
+bool LoopJumps::go_past_branch_end(double t, std::span<const double> x) {
+  begin();
+  return std::any_of(watched_.begin(), watched_.end(), [&](Watched& watched) {
+    return watched.goes && !watched.blind && go_from_before(watched, t, x);
+  });
 }
 
 /// What moves the unknowns of a loop, as they are; nothing where some loop has no solution.

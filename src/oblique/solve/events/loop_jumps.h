@@ -42,6 +42,8 @@ class LoopJumps {
   void begin();
   /// Notes the solutions at (t, x), before what happens next.
   void note(double t, std::span<const double> x);
+  /// A switch that is due then is to go on from where it will be: at its level it would stay where it was.
+  void expect(std::size_t discrete_state, double position);
   /// Puts the switches and tables of a loop where these unknowns ask for them, whether they solve it or not.
   void place(std::size_t loop, const std::vector<double>& unknowns, double t, std::span<const double> x);
   /// The same, but for the limits of elements, at the guesses of every loop that amplifiers hold, or on which
@@ -54,6 +56,9 @@ class LoopJumps {
   /// Where something has no solution at (t, x): lets the first loop go from where it was noted, or from its
   /// guess, that comes to rest elsewhere, one of amplifiers too. False where there is none.
   bool go(double t, std::span<const double> x);
+  /// Where a branch has ended between the switches as they stand: lets the first loop of amplifiers on which
+  /// a switch acts, as a limit, go from there that comes to rest elsewhere. False where there is none.
+  bool go_past_branch_end(double t, std::span<const double> x);
 
  private:
   struct Watched {

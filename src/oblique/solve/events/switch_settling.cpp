@@ -395,7 +395,12 @@ bool SwitchSettling::settle(double t, std::span<const double> x) {
       // These go on turning over: their event functions depend on their own positions.
       restless.insert(restless.end(), turned.begin(), turned.end());
       if (round <= 2 * most) continue;
-      if (!choose_restless(restless, {}, t, x))
+      // What lies on its switching surface is decided next.
+      Units undecided;
+      for (const std::uint32_t s : members_of(at_zero)) {
+        if (std::find(restless.begin(), restless.end(), s) == restless.end()) undecided.push_back(s);
+      }
+      if (!choose_restless(restless, undecided, t, x))
         throw no_position(*std::min_element(restless.begin(), restless.end()), t);
       event_functions_.evaluate(t, x, announced_);
       return true;

@@ -120,13 +120,18 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
   settling_.end({});
 }
 
-/// Puts the switches that are due where they will be, but for what slides.
-void Switching::put_what_is_due() {
+/// Calls `put` with the discrete state of each switch that is due, but of what slides, and its position then.
+template <class Put>
+void Switching::each_due(const Put& put) const {
   for (std::size_t s = 0; s < program_.switches().size(); ++s) {
     const auto due = announced_position(program_.switch_structure(), location_.announced(), s);
-    if (due && !slide_.holds(s) && !slide_.follows(s))
-      workspace_.set_discrete_state(program_.switches()[s].discrete_state, *due);
+    if (due && !slide_.holds(s) && !slide_.follows(s)) put(program_.switches()[s].discrete_state, *due);
   }
+}
+
+/// Puts the switches that are due where they will be.
+void Switching::put_what_is_due() {
+  each_due([this](std::uint32_t state, double position) { workspace_.set_discrete_state(state, position); });
 }
 
 /// What is uncertain of each unit that slides, should it leave its switching surface: with the other switches
@@ -226,6 +231,7 @@ void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<std::uint32_t> slid = slide_.units();
   const std::vector<SlidingMode::Doubt> doubts = doubts_of_slide(t, x);
   loop_jumps_.note(t, x);
+  each_due([this](std::uint32_t state, double position) { loop_jumps_.expect(state, position); });
   if (location_.slide_changes())
     settling_.begin();
   else

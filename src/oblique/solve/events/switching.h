@@ -52,6 +52,11 @@ class Switching {
                   std::span<const double> x) {
     loop_jumps_.place(loop, unknowns, t, x);
   }
+  /// Lets the amplifiers of a loop whose branch has ended at (t, x) go to where a switch on it, as a limit,
+  /// lets them rest; false where there is no such place.
+  bool go_past_branch_end(double t, std::span<const double> x) {
+    return loop_jumps_.go_past_branch_end(t, x);
+  }
   /// Of each algebraic loop: whether its elements would leave the solution at (t, x). (See LoopJumps.)
   std::vector<bool> loops_that_run_away(double t, std::span<const double> x) {
     return loop_jumps_.run_away(t, x);
@@ -164,6 +169,8 @@ class Switching {
   std::vector<double> readings(double t, std::span<const double> x);
   bool look_at_hidden(double t, const Interpolant& solution);
   void look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution);
+  template <class Put>
+  void each_due(const Put& put) const;
   void put_what_is_due();
   template <class Action>
   void let_loops_go(double t, std::span<const double> x, const Action& action);

@@ -92,7 +92,8 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
 }
 
 double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
-  constexpr double kMost = 2;      // in powers of e: what a step of the order of the solver follows
+  // In powers of e: Euler's implicit step, the first one of BDF, turns the growth round from 1 on.
+  constexpr double kMost = 0.5;
   constexpr double kFaster = 1.5;  // than what others hold: it is asked again
   constexpr double kTicks = 1e3;   // of the clock, that growth takes at least
   const auto is_passed_over = [&](double rate) { return rate * step > kMost; };

@@ -99,14 +99,15 @@ bool Integration::turns_too_far(double from, double t) {
 /// Whether an implicit step has passed over growth: it is then to be taken anew, and no longer than that
 /// takes.
 bool Integration::outruns_growth(double from, double t) {
-  constexpr double kLess = 0.5;
+  constexpr double kPart = 0.25;  // of the time in which it grows by e
+  constexpr double kLess = kPart / 2;
   if (settings_.method == diagram::IntegrationMethod::adams) return false;
   const double rate = growth_.outrun(t, solver_->states(), t - from);
   if (rate == 0) {
     if (parts_.system.own_growth() * growth_limit_ < kLess) growth_limit_ = kNone;
     return false;
   }
-  growth_limit_ = 1 / rate;
+  growth_limit_ = kPart / rate;
   solver_->restart(from, parts_.states, parts_.segments.end(), parts_.segments.end() - from);
   return true;
 }

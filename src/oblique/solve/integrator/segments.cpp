@@ -45,7 +45,8 @@ void Segments::follow_phases(double t) {
 /// Settles everything at t, where an event has come or a branch of an algebraic loop has ended.
 void Segments::settle(double t, bool at_branch_end) {
   parts_.workspace.follow_branches(false);
-  if (at_branch_end) parts_.branches.pass(t, parts_.states);
+  if (at_branch_end)
+    parts_.branches.pass(t, parts_.states, [&] { parts_.switching.go_past_branch_end(t, parts_.states); });
   parts_.switching.settle(t, parts_.states);
   follow_phases(t);
   // A loop that no derivative and no comparison needs leaves its branch here, too, if it must.
@@ -70,13 +71,26 @@ bool Segments::turns_before(double from, double& t, const Interpolant& solution)
   return event.has_value();
 }
 
+/// Settles a switch that turns over at t where a branch seems to end. If that is a limit that is reached only
+/// where the amplifiers have left the branch, it does end.
+void Segments::settle_turn(double t) {
+  try {
+    settle(t, false);
+  } catch (const SolveError&) {
+    settle(t, true);
+  }
+}
+
 void Segments::end_branch(double from, const std::vector<double>& last, double& t) {
   std::vector<double> rates(parts_.states.size());
   for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = (parts_.states[i] - last[i]) / (t - from);
   const StraightLine ahead(from, last, rates);
   const bool turned = turns_before(from, t, ahead);
   ahead.states_at(t, parts_.states);
-  settle(t, !turned);
+  if (turned)
+    settle_turn(t);
+  else
+    settle(t, true);
 }
 
 void Segments::begin(double t) {
@@ -203,17 +217,17 @@ bool Segments::stands(double t) {
 /// Settles what there is at t, where a switch turns over, or soon after, where a branch ends.
 void Segments::pass_end(double& t, std::optional<double> branch_end, bool settled) {
   if (branch_end) {
-    if (turns_before(t, *branch_end, *step_.solution)) {
-      t = *branch_end;
-      branch_end.reset();
-    } else {
-      parts_.branches.find(t, *branch_end, *step_.solution);  // it jumps from the last place on the branch
-      t = *branch_end;
-    }
-  }
-  if (!settled) {
+    const bool turns = turns_before(t, *branch_end, *step_.solution);
+    if (!turns) parts_.branches.find(t, *branch_end, *step_.solution);  // it jumps from the last place on it
+    t = *branch_end;
     step_.solution->states_at(t, parts_.states);
-    settle(t, branch_end.has_value());
+    if (turns)
+      settle_turn(t);
+    else
+      settle(t, true);
+  } else if (!settled) {
+    step_.solution->states_at(t, parts_.states);
+    settle(t, false);
   }
   if (parts_.overloads) parts_.overloads->restart(t, parts_.states);
 }

@@ -72,6 +72,7 @@ class Segments {
 
  private:
   void settle(double t, bool at_branch_end);
+  void settle_turn(double t);
   void pass_end(double& t, std::optional<double> branch_end, bool settled);
   bool turns_before(double from, double& t, const Interpolant& solution);
   double look_through(double begin, double end, std::span<const double> sample_times,
