@@ -292,6 +292,20 @@ y = {{ type = "limiter", in = "s" }}
   }
 }
 
+// At t = 0 the table lies at its jump, and the loop that another address would close leads it back from where
+// its own event leads it: the run begins all the same, with the side to which b goes.
+TEST(LoopJumps, LeadNoTableRoundAndRoundAtTheStart) {
+  for (
+      const std::string& blocks : both_orders(
+          {R"toml(b = { type = "multiplexer", in0 = "-1.7*u", in1 = "-2*s", address = "-0.5*u", step = 1.125 })toml",
+           R"toml(f = { type = "function-generator", in = "-0.5*b", points = [[-1, 0.5], [0, 0], [0, -0.25], [1, -0.25]] })toml",
+           R"toml(s = { type = "summer", in = ["-0.5*f"] })toml",
+           R"toml(u = { type = "time-function", formula = "sin(time)" })toml"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 1, .samples = 2});
+    EXPECT_EQ(row_values(result, "f"), std::vector<double>(2, -0.25)) << blocks;
+  }
+}
+
 // An amplifier that runs away from between its limits goes to −1, whatever lies at a level of its own beside
 // it.
 TEST(LoopJumps, GoToALimitBesideWhatIsNotDecidedYet) {

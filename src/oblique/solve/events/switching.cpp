@@ -56,6 +56,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
                   [](const network::State& state) { return state.start_node.has_value(); });
   // States take their starts again from what events change at this instant, until one sets states itself.
   bool starting = true, takes = any_start, first = true, has_gone = false;
+  bool last = false;  // loops go where everything else has settled
   const auto take = [&] {
     const std::vector<double> before = x;
     try {
@@ -79,8 +80,8 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     first = false;
     settling_.begin();
     if (active() && settling_.settle(t, x)) return true;
-    // What a loop would be led to by an event may hang on where it goes before.
-    if (loops_go && loop_jumps_.any()) {
+    // What an event leads to may hang on where a loop goes before it.
+    if (loops_go && !last && loop_jumps_.any()) {
       if (loop_jumps_.settle(t, x)) return true;
       if (active()) event_functions_.evaluate(t, x, location_.announced());
     }
@@ -91,14 +92,15 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
       log_.forget_choices();
       return true;
     }
-    return false;
+    return last && std::exchange(loops_go, false) && loop_jumps_.settle(t, x);
   };
   loop_jumps_.place_at_guesses(t, x);
   Circle circle;
   for (int round = 0;; ++round) {
     if (round > kMostRounds || circle.closes(workspace_.discrete_states(), x)) {
-      // Tables may lead a loop in a circle that begins where others did not stand yet.
-      if (std::exchange(has_gone, true) || !loop_jumps_.go(t, x))
+      // Loops may lead the events back that have led them on: they come last then. Tables may lead a loop in
+      // a circle that begins where others did not stand yet.
+      if (std::exchange(last, true) && (std::exchange(has_gone, true) || !loop_jumps_.go(t, x)))
         throw log_.endless("the start does not settle", t);
       circle = {};
       round = 0;
