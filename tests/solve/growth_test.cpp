@@ -78,6 +78,20 @@ y = { type = "servo-amplifier", in = ["-u", "-0.5*y"], gain = 1e6, bandwidth = 1
   for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(y[k], t[k] < turns ? 1 : -1, 1e-7) << t[k];
 }
 
+// And an astable, whose lag moves all the time, leaves its limits at ±1/2: x = 1.1 e^−t − 1 up to ln 2.2 s.
+TEST(UnseenGrowth, IsNotOfAnAmplifierThatALagDrives) {
+  const auto result =
+      run_of(Compiled(R"toml(x = { type = "transfer-lag", in = "a", time_constant = 1, initial = 0.1 }
+a = { type = "servo-amplifier", in = ["x", "-0.5*a"], gain = 1e5, bandwidth = "1 kHz", limit = 1 }
+)toml"),
+             {.until = 1.5, .samples = 16});
+  EXPECT_TRUE(result.warnings.empty());
+  const double turned = std::log(2.2);
+  const auto t = row_values(result, "t"), x = row_values(result, "x");
+  for (std::size_t k = 0; k < t.size(); ++k)  // a gain of 1e5 turns over at (1/2 − 1e-5)
+    EXPECT_NEAR(x[k], t[k] < turned ? 1.1 * std::exp(-t[k]) - 1 : 1 - 1.5 * std::exp(turned - t[k]), 5e-5);
+}
+
 // y = arcsin u by an amplifier that stands at its limit of 2 behind the fold: where it leaves that, at u =
 // sin 2, implicit steps longer than the 1e-9 s of its growth would lead it along π − arcsin u, beyond its
 // limit, to any tolerance above the 1e-9 that it begins from.

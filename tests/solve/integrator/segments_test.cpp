@@ -145,5 +145,26 @@ TEST(Phases, HaveTheirLengthLateInARun) {
   }
 }
 
+// A step of Rosenbrock's method ends where the summer b2 is beyond the limit of its machine, and the loop b0,
+// of which nothing is integrated, has no solution there: it has one up to the limit, and at it.
+TEST(Limits, AreFoundBeforeALoopBeyondThemHasNoSolution) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "0.62*sin(3.16*time + 3)" }
+b0 = { type = "summer", in = ["1.76*b3", "0.41*b2", "1.29*b0"] }
+b1 = { type = "multiplier", in = ["b2", "b0"] }
+b2 = { type = "summer", in = ["-1.86*u", "1.41*b5"] }
+b3 = { type = "multiplier", in = ["b1", "b0"] }
+b5 = { type = "integrator", in = ["1.8*b2"], initial = 0.23 }
+)toml",
+                      "[machine]\nprofile = \"ec-1\"\n");
+  using diagram::IntegrationMethod;
+  const auto end_by = [&](IntegrationMethod method) {
+    const oblique::solve::Run result =
+        run_of(made, {.until = 3, .tolerance = 1e-6, .samples = 4, .method = method});
+    EXPECT_EQ(row_values(result, "b2").back(), -1.2);
+    return row_values(result, "b0").back();
+  };
+  EXPECT_NEAR(end_by(IntegrationMethod::rodas), end_by(IntegrationMethod::bdf), 1e-6);  // a loop at the limit
+}
+
 }  // namespace
 }  // namespace oblique::solve

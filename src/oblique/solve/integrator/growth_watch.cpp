@@ -91,6 +91,16 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
   std::copy(x.begin(), x.end(), before_.begin());
 }
 
+/// ∂f/∂x of a state by itself, by the Jacobian that was looked at last.
+double GrowthWatch::own_growth(std::size_t state) const {
+  const network::SparsePattern& pattern = system_.pattern();
+  for (auto k = pattern.column_starts[state]; k < pattern.column_starts[state + 1]; ++k) {
+    const auto entry = static_cast<std::size_t>(k);
+    if (pattern.rows[entry] == static_cast<std::int64_t>(state)) return jacobian_[entry];
+  }
+  return 0;
+}
+
 double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
   // In powers of e: Euler's implicit step, the first one of BDF, turns the growth round from 1 on.
   constexpr double kMost = 0.5;
@@ -103,14 +113,8 @@ double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
   const double own = system_.own_growth();
   if (!is_passed_over(own) || own <= kFaster * held_own_ || own * kTicks * time_resolution(t) > 1) return 0;
   std::size_t fastest = 0;
-  const network::SparsePattern& pattern = system_.pattern();
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    for (auto k = pattern.column_starts[i]; k < pattern.column_starts[i + 1]; ++k) {
-      const auto entry = static_cast<std::size_t>(k);
-      if (pattern.rows[entry] == static_cast<std::int64_t>(i) && jacobian_[entry] == own) fastest = i;
-    }
-  }
-  const CoupledModes group = closed_modes(pattern, jacobian_, fastest);
+  while (own_growth(fastest) != own) ++fastest;
+  const CoupledModes group = closed_modes(system_.pattern(), jacobian_, fastest);
   double rate = 0;
   for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
   if (!is_passed_over(rate)) {
@@ -179,7 +183,14 @@ bool GrowthWatch::leaves_at_once(std::span<const double> x, const std::vector<st
   // Nearer than so many errors the side is not known: those of the whole run, or of a few steps.
   constexpr double kErrors = 100, kErrorsOfSteps = 5;
   const double most = settings_.relative_tolerance * span_;
-  const bool stood = std::all_of(states.begin(), states.end(), [&](std::size_t i) { return stood_[i]; });
+  constexpr double kOwn = 0.5;  // of the growth: of a state that makes it
+  bool any = false, stood = true;
+  for (const std::size_t i : states) {
+    if (own_growth(i) < kOwn * rate) continue;
+    any = true;
+    stood = stood && stood_[i];
+  }
+  stood = stood && any;
   if (stood && 1 / rate < most) return true;
   double error = 0;
   for (const std::size_t i : states)

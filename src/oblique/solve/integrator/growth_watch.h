@@ -48,6 +48,7 @@ class GrowthWatch {
 
  private:
   double near_distance(std::size_t i, double x) const;  ///< [machine unit]
+  double own_growth(std::size_t state) const;
   bool is_near_rest(std::span<const double> x);
   double driven_distance(double t, std::span<const double> x, const std::vector<std::size_t>& states,
                          double rate);

@@ -134,23 +134,37 @@ void Segments::take_step(double from, double t, std::span<const double> sample_t
   step_.end = t;
 }
 
+/// The first of these times, or between them, at which a switch turns over. A loop may have no solution
+/// beyond a switch that turns over before, such as a limit: then what follows from it says nothing.
+std::optional<double> Segments::search(const std::vector<double>& times) {
+  try {
+    return parts_.switching.search(step_.begin, times, *step_.solution);
+  } catch (const SolveError& failure) {
+    if (failure.kind() != SolveError::Kind::singular_loop) throw;
+    parts_.workspace.pass_failing_loops(true);
+    const auto event = parts_.switching.search(step_.begin, times, *step_.solution);
+    parts_.workspace.pass_failing_loops(false);
+    if (!event) throw;
+    return event;
+  }
+}
+
 /// The first time in what is left of the step at which a switch turns over.
 std::optional<double> Segments::find_event() {
   if (parts_.program.switches().empty() || !(step_.end > step_.begin)) return std::nullopt;
   std::vector<double> times(step_.times_left().begin(), step_.times_left().end());
-  if (!parts_.switching.lets_pass()) return parts_.switching.search(step_.begin, times, *step_.solution);
+  if (!parts_.switching.lets_pass()) return search(times);
   step_.solution->states_at(step_.begin, parts_.states);
   const auto wait = parts_.switching.known_wait(step_.begin, parts_.states, EventLocation::Of::let_pass);
   const double edge = wait ? step_.begin + *wait : step_.end;
   step_.edges_at_begin = edge > step_.begin ? 0 : step_.edges_at_begin + 1;
   if (step_.edges_at_begin > kMostAtOnce) parts_.switching.throw_endless(step_.begin);
   // One at the end of the step comes with the next, or with all that ends the segment there.
-  if (!(edge < step_.end - time_resolution(step_.end)))
-    return parts_.switching.search(step_.begin, times, *step_.solution);
+  if (!(edge < step_.end - time_resolution(step_.end))) return search(times);
   if (edge > step_.begin) {
     std::erase_if(times, [&](double time) { return time >= edge; });
     times.push_back(edge);
-    if (const auto event = parts_.switching.search(step_.begin, times, *step_.solution)) return event;
+    if (const auto event = search(times)) return event;
   }
   return edge;
 }

@@ -78,6 +78,7 @@ class Segments {
   double look_through(double begin, double end, std::span<const double> sample_times,
                       const Interpolant& solution);
   bool turns_without_effect(double at, std::span<const double> sample_times, const Interpolant& solution);
+  std::optional<double> search(const std::vector<double>& times);
   std::optional<double> find_event();
   bool stands(double t);
   bool follows_sensitivities() const { return !parts_.options.sensitivity.empty(); }
