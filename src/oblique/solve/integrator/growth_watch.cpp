@@ -7,8 +7,6 @@
 
 #include <Eigen/Dense>
 
-#include <oblique/solve/events/time_resolution.h>
-
 namespace oblique::solve {
 namespace {
 
@@ -105,13 +103,12 @@ double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
   // In powers of e: Euler's implicit step, the first one of BDF, turns the growth round from 1 on.
   constexpr double kMost = 0.5;
   constexpr double kFaster = 1.5;  // than what others hold: it is asked again
-  constexpr double kTicks = 1e3;   // of the clock, that growth takes at least
   const auto is_passed_over = [&](double rate) { return rate * step > kMost; };
   if (!is_passed_over(system_.own_growth()) || !system_.is_jacobian_exact() ||
       !system_.jacobian(t, x.data(), jacobian_.data()))
     return 0;
   const double own = system_.own_growth();
-  if (!is_passed_over(own) || own <= kFaster * held_own_ || own * kTicks * time_resolution(t) > 1) return 0;
+  if (!is_passed_over(own) || own <= kFaster * held_own_) return 0;
   std::size_t fastest = 0;
   while (own_growth(fastest) != own) ++fastest;
   const CoupledModes group = closed_modes(system_.pattern(), jacobian_, fastest);

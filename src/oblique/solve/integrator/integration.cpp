@@ -101,7 +101,6 @@ bool Integration::turns_too_far(double from, double t) {
 bool Integration::outruns_growth(double from, double t) {
   constexpr double kPart = 0.25;  // of the time in which it grows by e
   constexpr double kLess = kPart / 2;
-  if (settings_.method == diagram::IntegrationMethod::adams) return false;
   const double rate = growth_.outrun(t, solver_->states(), t - from);
   if (rate == 0) {
     if (parts_.system.own_growth() * growth_limit_ < kLess) growth_limit_ = kNone;
