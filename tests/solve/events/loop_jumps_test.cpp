@@ -292,6 +292,19 @@ y = {{ type = "limiter", in = "s" }}
   }
 }
 
+// y = (c − 2y)² where c steps from 1 to −0.06: y, as the unknown, would go up from 0.25 for ever, and
+// Newton's method finds 0.185, from which y and s = c − 2y both run away (the gain is 1.72). At 0.00486 they
+// stay.
+TEST(LoopJumps, KeepToNoSolutionFromWhichElementsRunAwayWhileThereIsAnother) {
+  for (const std::string& blocks :
+       both_orders({R"(z = { type = "integrator", in = ["y"] })", R"(y = { type = "squarer", in = "s" })",
+                    R"(s = { type = "summer", in = ["c", "-2*y"] })",
+                    R"(c = { type = "step", at = 1, from = 1, to = -0.06 })"})) {
+    const auto result = run_of(Compiled(blocks), {.until = 2, .samples = 3});
+    EXPECT_NEAR(row_values(result, "y")[2], (1 - 0.24 - std::sqrt(1 - 0.48)) / 8, kNewton) << blocks;
+  }
+}
+
 // At t = 0 the table lies at its jump, and the loop that another address would close leads it back from where
 // its own event leads it: the run begins all the same, with the side to which b goes.
 TEST(LoopJumps, LeadNoTableRoundAndRoundAtTheStart) {

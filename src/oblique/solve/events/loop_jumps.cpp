@@ -10,6 +10,7 @@
 
 #include <oblique/network/program/program.h>
 #include <oblique/solve/stability/amplifier_motion.h>
+#include <oblique/text/even_point.h>
 
 namespace oblique::solve {
 namespace {
@@ -200,7 +201,9 @@ bool LoopJumps::settle(double t, std::span<const double> x) {
     std::vector<double> now;
     for (std::size_t u = 0; u < unknowns_.size(); ++u) now.push_back(workspace_.unknown(u));
     const bool jumps = part_between(unknowns_of(watched, unknowns_), unknowns_of(watched, now)) > kJump;
-    if ((jumps || (watched.stable && !rests(watched, here->rates))) && go_from_before(watched, t, x))
+    const bool runs_away = !rests(watched, here->rates);
+    if ((jumps || (watched.stable && runs_away)) &&
+        (go_from_before(watched, t, x) || (runs_away && leave(watched, t, x))))
       any = true;
   }
   return any;
@@ -281,6 +284,43 @@ bool LoopJumps::follow(Watched& watched, Eigen::VectorXd& z, double t, std::span
     }
   }
   return false;
+}
+
+/// Puts a loop of elements without memory that would run away from where it is, and that its elements, as far
+/// as they are its unknowns, have led nowhere from where it was, at the solution nearest to that at which it
+/// rests. It is sought from points that fill the machine's range evenly; false where there is none.
+bool LoopJumps::leave(Watched& watched, double t, std::span<const double> x) {
+  constexpr int kPoints = 24, kMostSearches = 8;
+  constexpr double kReach = 3;  // [machine unit]
+  if (!watched.blind || watched.searches >= kMostSearches) return false;
+  const std::vector<std::size_t>& unknowns = program_.loops()[watched.loop].unknowns;
+  const Eigen::VectorXd before = unknowns_of(watched, unknowns_);
+  double nearest = std::numeric_limits<double>::infinity();
+  std::optional<network::Workspace> found;
+  for (int k = 1; k <= kPoints; ++k) {
+    network::Workspace trial = workspace_;
+    std::vector<double> z = text::even_point(k, unknowns.size());
+    for (double& unknown : z) unknown = kReach * (2 * unknown - 1);
+    trial.hold_loop(watched.loop, t, z, true);
+    watched.placing.place(t, x.data(), trial, &thresholds_);
+    trial.hold_loop(watched.loop, std::numeric_limits<double>::quiet_NaN(), {}, false);
+    for (std::size_t i = 0; i < unknowns.size(); ++i) trial.set_unknown(unknowns[i], z[i]);
+    const auto here = pull(watched, t, x, trial);
+    if (!here || !rests(watched, here->rates)) continue;
+    std::vector<double> there;
+    for (std::size_t u = 0; u < unknowns_.size(); ++u) there.push_back(trial.unknown(u));
+    const double distance = part_between(before, unknowns_of(watched, there));
+    if (!(distance < nearest)) continue;
+    nearest = distance;
+    found = std::move(trial);
+  }
+  if (!found) {
+    ++watched.searches;
+    return false;
+  }
+  workspace_.load_discrete_states(found->discrete_states());
+  for (const std::size_t u : unknowns) workspace_.set_unknown(u, found->unknown(u));
+  return true;
 }
 
 /// Puts a loop where its elements take it from where it was; false where that leads nowhere, or where it is

@@ -69,6 +69,7 @@ class LoopJumps {
     bool blind = true;           ///< of elements without memory alone
     bool goes = true;            ///< at events, and where a run starts
     bool stable = true;          ///< when it was noted
+    int searches = 0;            ///< for another solution that were in vain
   };
 
   /// The residuals of a loop, and how they move its unknowns.
@@ -87,6 +88,7 @@ class LoopJumps {
   bool follow(Watched& watched, Eigen::VectorXd& z, double t, std::span<const double> x,
               network::Workspace& workspace);
   bool go_from_before(Watched& watched, double t, std::span<const double> x);
+  bool leave(Watched& watched, double t, std::span<const double> x);
   Eigen::VectorXd unknowns_of(const Watched& watched, const std::vector<double>& all) const;
 
   const network::Program& program_;
