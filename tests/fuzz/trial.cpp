@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "trial.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <functional>
@@ -102,6 +103,14 @@ void run_whole(const diagram::Diagram& diagram, const TrialOptions& asked, Trial
     return;
   }
   trial.end = trial.run->warnings.empty() ? Trial::End::clean : Trial::End::warned;
+  // It is not the run that would have been with more of them.
+  if (std::any_of(trial.run->warnings.begin(), trial.run->warnings.end(),
+                  [](const text::Diagnostic& warning) {
+                    return warning.what.find("a finer run takes too many steps") != std::string::npos;
+                  })) {
+    trial.end = Trial::End::over_budget;
+    return;
+  }
   std::multiset<std::string>
       said;  // of several at one instant, the order of the blocks says which comes first
   for (const text::Diagnostic& warning : trial.run->warnings) {

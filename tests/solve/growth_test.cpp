@@ -37,6 +37,20 @@ TEST(UnseenGrowth, IsSeenBySecondTry) {
   }
 }
 
+// Which takes more steps, and is told of where there are not so many.
+TEST(UnseenGrowth, IsToldWhereTheSecondTryTakesTooManySteps) {
+  const oblique::solve::Run result = run_of(Compiled(logistic("1e-20")), {.until = 60, .max_steps = 500});
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_THAT(
+      result.warnings[0].what,
+      HasSubstr("unstable equilibrium: too near for its tolerance, and a finer run takes too many steps, so "
+                "that what follows may be wrong"));
+  EXPECT_EQ(result.warnings[0].remedy,
+            "raise max_steps in [run], or start farther from the equilibrium, or write the states as their "
+            "distance "
+            "from it");
+}
+
 TEST(UnseenGrowth, LeavesAnEquilibriumThatIsMetExactly) {
   const oblique::solve::Run result = run_of(Compiled(logistic("0")), {.until = 100});
   EXPECT_TRUE(result.warnings.empty());

@@ -30,15 +30,16 @@ Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diag
   constexpr std::int64_t kMostTimesForFaint = 30, kAlwaysAllowedForFaint = 2'000;
   Refinement refinement;
   RunOptions finer = options;
-  bool failed = false;  // the last try
+  bool failed = false, out_of_steps = false;  // the last try
   for (int k = 0; k < kMostTries; ++k) {
     if (k > 0 && options.on_restart) options.on_restart();
     Observed observed;
     Run result;
     try {
       result = run_once(program, diagram, finer, loop_start, refinement, true, observed);
-    } catch (const SolveError&) {  // what was not seen may be why
+    } catch (const SolveError& failure) {  // what was not seen may be why
       failed = true;
+      out_of_steps = failure.kind() == SolveError::Kind::step_budget;
       if (observed.unseen.empty() && k == 0) throw;
       if (observed.unseen.empty()) break;
     }
@@ -57,19 +58,20 @@ Run run_seeing(const network::Program& program, const diagram::FlatDiagram& diag
     const Refinement before = refinement;
     refine(observed.unseen, program.n_states(), refinement);
     if (refinement == before) break;
-    failed = false;
+    failed = out_of_steps = false;
   }
   const auto run_to_the_end = [&](const Refinement& how, const RunOptions& with) {
     if (options.on_restart) options.on_restart();
     Observed observed;
     Run result = run_once(program, diagram, with, loop_start, how, false, observed);
-    for (text::Diagnostic& warning : warnings_of(observed.unseen, program, diagram))
+    for (text::Diagnostic& warning : warnings_of(observed.unseen, program, diagram, out_of_steps))
       result.warnings.push_back(std::move(warning));
     return result;
   };
   try {
     return failed ? run_to_the_end({}, options) : run_to_the_end(refinement, finer);
-  } catch (const SolveError&) {  // finer than it can be run
+  } catch (const SolveError& failure) {  // finer than it can be run
+    out_of_steps = failure.kind() == SolveError::Kind::step_budget;
     return run_to_the_end({}, options);
   }
 }

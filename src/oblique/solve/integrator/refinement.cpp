@@ -101,17 +101,20 @@ SolverSettings solver_settings(const std::vector<network::State>& states, const 
 }
 
 std::vector<text::Diagnostic> warnings_of(const Unseen& unseen, const network::Program& program,
-                                          const diagram::FlatDiagram& diagram) {
+                                          const diagram::FlatDiagram& diagram, bool out_of_steps) {
+  const std::string_view limit =
+      out_of_steps ? "its tolerance, and a finer run takes too many steps" : "the finest tolerance";
+  const std::string raise = out_of_steps ? "raise max_steps in [run], or " : "";
   std::vector<text::Diagnostic> warnings;
   for (const UnseenGrowth& growth : unseen.growth) {
     warnings.push_back(
         {{diagram.file, {}},
          fmt::format(
              "{} grew until t = {:.6g} s from within {:.2g} machine units of an unstable equilibrium: "
-             "too near for the finest tolerance, so that what follows may be wrong",
-             quoted_names(program, growth.states), growth.time, growth.distance),
+             "too near for {}, so that what follows may be wrong",
+             quoted_names(program, growth.states), growth.time, growth.distance, limit),
          {},
-         "start farther from the equilibrium, or write the states as their distance from it"});
+         raise + "start farther from the equilibrium, or write the states as their distance from it"});
   }
   for (const SmallState& small : unseen.small) {
     const std::size_t beyond = small.reading - std::min(small.reading, diagram.outputs.size());
@@ -119,14 +122,13 @@ std::vector<text::Diagnostic> warnings_of(const Unseen& unseen, const network::P
                                    ? fmt::format("output '{}'", diagram.outputs[small.reading].name)
                                    : fmt::format("'{}' ({})", program.switches()[beyond].block,
                                                  program.switches()[beyond].comparison);
-    warnings.push_back(
-        {{diagram.file, {}},
-         fmt::format(
-             "'{}' stays within {:.2g} machine units, which is too small for the finest tolerance, and "
-             "{} depends on it: it may be wrong",
-             program.states()[small.state].name, small.size, reader),
-         {},
-         "scale the state up, and down again what reads it"});
+    warnings.push_back({{diagram.file, {}},
+                        fmt::format("'{}' stays within {:.2g} machine units, which is too small for {}, and "
+                                    "{} depends on it: it may "
+                                    "be wrong",
+                                    program.states()[small.state].name, small.size, limit, reader),
+                        {},
+                        raise + "scale the state up, and down again what reads it"});
   }
   for (const FaintTurn& turn : unseen.faint) {
     const network::Switch& made = program.switches()[turn.number];

@@ -43,8 +43,8 @@ void refine(const Unseen& unseen, std::size_t n_states, Refinement& refinement);
 SolverSettings solver_settings(const std::vector<network::State>& states, const RunOptions& options,
                                diagram::IntegrationMethod method, const Refinement& refinement);
 
-/// The warnings of a run that is not fine enough.
+/// The warnings of a run that is not fine enough: as no tolerance is, or as a finer one was `out_of_steps`.
 std::vector<text::Diagnostic> warnings_of(const Unseen& unseen, const network::Program& program,
-                                          const diagram::FlatDiagram& diagram);
+                                          const diagram::FlatDiagram& diagram, bool out_of_steps = false);
 
 }  // namespace oblique::solve
