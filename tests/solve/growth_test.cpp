@@ -92,6 +92,28 @@ y = { type = "servo-amplifier", in = ["-u", "-0.5*y"], gain = 1e6, bandwidth = 1
   for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(y[k], t[k] < turns ? 1 : -1, 1e-7) << t[k];
 }
 
+// Nor beside an integrator that stands at its own limit, and whose shares the Jacobian does not have: a turns
+// over where u passes ±1/2, to within 1e-5, first at t₁ = π/6.
+TEST(UnseenGrowth, IsNotOutrunBesideASlide) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "sin(time)" }
+a = { type = "servo-amplifier", in = ["-u", "-0.5*a"], gain = 1e5, bandwidth = "1 MHz", limit = 1, initial = -1 }
+one = { type = "constant" }
+drawn = { type = "summer", in = ["one", "0.1*a"] }
+z = { type = "integrator", in = ["drawn"], limit = 0.2 }
+y = { type = "integrator", in = ["a"] }
+)toml");
+  using diagram::IntegrationMethod;
+  for (const auto method : {IntegrationMethod::bdf, IntegrationMethod::adams}) {
+    for (const double tolerance : {1e-5, 1e-7}) {
+      const auto result =
+          run_of(made, {.until = 10, .tolerance = tolerance, .samples = 11, .method = method});
+      EXPECT_NEAR(row_values(result, "z").back(), 0.2, 1e-9);
+      // −1 up to t₁, +1, −1 and +1 for π each, and −1 again
+      EXPECT_NEAR(row_values(result, "y").back(), 4 * std::numbers::pi - 10, 2 * tolerance);
+    }
+  }
+}
+
 // And an astable, whose lag moves all the time, leaves its limits at ±1/2: x = 1.1 e^−t − 1 up to ln 2.2 s.
 TEST(UnseenGrowth, IsNotOfAnAmplifierThatALagDrives) {
   const auto result =

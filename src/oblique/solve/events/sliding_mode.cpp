@@ -160,6 +160,18 @@ void SlidingMode::load_base() {
     workspace_.set_discrete_state(discrete_state, position);
 }
 
+void SlidingMode::put_at_rest(bool rests) {
+  load_base();
+  for (std::size_t u = 0; rests && u < units_.size(); ++u) {
+    const auto above = rests_above(u);
+    for (const std::uint32_t s : program_.switch_structure().members[units_[u]]) {
+      if (above)
+        workspace_.set_discrete_state(program_.switches()[s].discrete_state,
+                                      *above != program_.switch_structure().opposite[s] ? 1 : 0);
+    }
+  }
+}
+
 bool SlidingMode::settle_sides(double t, std::span<const double> x) {
   return std::all_of(sides_.begin(), sides_.end(), [&](SlideSide& side) { return settle(side, t, x); });
 }

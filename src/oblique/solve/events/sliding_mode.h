@@ -88,6 +88,8 @@ class SlidingMode {
   /// Of such a unit whose event function reads this state alone: whether the side on which it rests leads it
   /// back to the switching surface from just beside it, as an amplifier beyond its limit comes back.
   bool comes_back(std::size_t unit, std::size_t state, double t, std::span<const double> x);
+  /// Puts the switches of what rests on one side there, where nothing moves; or back to where they were.
+  void put_at_rest(bool rests);
   /// How fast the side that drives a unit most moves its event function; 0 of one that is coupled.
   double fastest_drive(std::size_t unit) const { return drives(unit).stronger(); }
   /// Whether both sides of a unit that nothing couples drive to the switching surface, and neither hardly.

@@ -104,26 +104,32 @@ double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
   constexpr double kMost = 0.5;
   constexpr double kFaster = 1.5;  // than what others hold: it is asked again
   const auto is_passed_over = [&](double rate) { return rate * step > kMost; };
-  if (!is_passed_over(system_.own_growth()) || !system_.is_jacobian_exact() ||
-      !system_.jacobian(t, x.data(), jacobian_.data()))
+  const double fastest = system_.own_growth();
+  if (!is_passed_over(fastest)) return 0;
+  // Of what was all held the Jacobian is looked at ever again, but not at each step.
+  const bool is_held = fastest <= kFaster * fastest_held_;
+  if ((is_held && ++held_steps_ < kStepsBetween) || !system_.jacobian(t, x.data(), jacobian_.data()))
     return 0;
-  const double own = system_.own_growth();
-  if (!is_passed_over(own) || own <= kFaster * held_own_) return 0;
-  std::size_t fastest = 0;
-  while (own_growth(fastest) != own) ++fastest;
-  const CoupledModes group = closed_modes(system_.pattern(), jacobian_, fastest);
-  double rate = 0;
-  for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
-  if (!is_passed_over(rate)) {
-    held_own_ = own;
-    return 0;
-  }
-  // From an equilibrium that is met exactly nothing grows.
+  held_steps_ = 0;
   std::vector<double> rates(x.size());
-  const bool moves =
-      system_.derivatives(t, x.data(), rates.data()) &&
-      std::any_of(group.states.begin(), group.states.end(), [&](std::size_t i) { return rates[i] != 0; });
-  return moves ? rate : 0;
+  double outrun = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!is_passed_over(own_growth(i))) continue;
+    const CoupledModes group = closed_modes(system_.pattern(), jacobian_, i);
+    double rate = 0;
+    for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
+    if (!is_passed_over(rate) ||
+        (!system_.is_jacobian_exact() && !grows_by_differences(t, x, group.states, rate))) {
+      fastest_held_ = std::max(fastest_held_, own_growth(i));
+      continue;
+    }
+    // From an equilibrium that is met exactly nothing grows.
+    const bool moves =
+        system_.derivatives(t, x.data(), rates.data()) &&
+        std::any_of(group.states.begin(), group.states.end(), [&](std::size_t k) { return rates[k] != 0; });
+    if (moves) outrun = std::max(outrun, rate);
+  }
+  return outrun;
 }
 
 void GrowthWatch::end() {

@@ -72,7 +72,8 @@ class GrowthWatch {
   std::vector<bool> told_;        ///< of each state, whether it is among `found_`
   std::vector<bool> stood_;       ///< of each state: it stood still before the segment, and was known exactly
   std::vector<long> held_since_;  ///< Jacobian at which its growth was last found to be held by other states
-  double held_own_ = 0;           ///< own growth of a state [1/s] that others have been found to hold
+  double fastest_held_ = 0;       ///< own growth of a state [1/s] that others have been found to hold
+  int held_steps_ = 0;            ///< since that was looked at
   std::vector<UnseenGrowth> found_;
 };
 
