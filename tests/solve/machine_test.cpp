@@ -101,5 +101,40 @@ minus_y = { type = "integrator", in = "v" }
   EXPECT_NEAR(trajectory.at(trajectory.rows() - 1, 1), std::cos(40.0), 1e-4);
 }
 
+// A triangle generator, whose amplifier is to run to the limit that the diagram gives it, beside an
+// integrator that has that of the machine: x goes at 0.6 a second from 0.1 to −0.6, and to 0.6 in 2 s.
+TEST(Machine, LetsAnAmplifierBeginAtALimitOfTheDiagram) {
+  const Compiled made(R"toml(x = { type = "integrator", in = ["-0.5*s"], initial = 0.1 }
+s = { type = "servo-amplifier", in = ["x", "-0.5*s"], initial = -1, limit = 1.2 }
+)toml",
+                      "[machine]\nprofile = \"tr-10\"\n");
+  std::vector<double> turns;
+  for (const EventRecord& event : run_of(made, {.until = 6}).events) {
+    if (event.what.starts_with("s: leaves ")) turns.push_back(event.time);
+  }
+  ASSERT_EQ(turns.size(), 3U);
+  for (std::size_t k = 0; k < turns.size(); ++k)
+    EXPECT_NEAR(turns[k], 0.7 / 0.6 + 2 * static_cast<double>(k), 1e-4);  // offset, drift and gain of a TR-10
+}
+
+TEST(Machine, TellsOfAnAmplifierThatRunsToItsLimitAndHowToMeanIt) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "0.8*sin(time)" }
+s = { type = "servo-amplifier", in = ["-u", "-0.5*s"], initial = -1 }
+)toml",
+                      "[machine]\nprofile = \"tr-10\"\n");
+  try {
+    run_of(made);
+    FAIL();
+  } catch (const SolveError& error) {
+    const text::Diagnostic& told = error.diagnostics().front();
+    EXPECT_TRUE(told.what.starts_with(
+        "the servo loops do not come to rest before the clock starts; still moving: 's'"))
+        << told.what;
+    EXPECT_TRUE(told.remedy.words().ends_with(
+        "If 's' is to run to its limit, as a Schmitt trigger does, give it that in the diagram: limit = 1.2"))
+        << told.remedy;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -30,11 +30,22 @@ void refuse_singular_rates(const StartParts& parts, double t, const std::vector<
   }
 }
 
-/// Whether a limit is the machine's: what runs to it is a loop that the machine does not hold, which is to be
-/// told.
-bool any_saturates(const diagram::FlatDiagram& diagram) {
-  return std::any_of(diagram.blocks.begin(), diagram.blocks.end(),
-                     [](const diagram::FlatBlock& block) { return block.saturation.has_value(); });
+/// An amplifier that stands at a limit that is the machine's: what runs to it is a loop that the machine does
+/// not hold, which is to be told. (One that the diagram gives is meant.)
+const diagram::FlatBlock* find_saturated(const StartParts& parts, const std::vector<double>& states) {
+  constexpr double kAt = 1e-6;  // of the limit
+  const auto is_saturated = [&](const diagram::FlatBlock& block) {
+    if (!block.saturation) return false;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const std::string& name = parts.program.states()[i].name;
+      const bool is_own = name == block.path || name.starts_with(block.path + ".");
+      if (is_own && std::abs(states[i]) >= (1 - kAt) * block.parameters[*block.saturation]) return true;
+    }
+    return false;
+  };
+  const std::vector<diagram::FlatBlock>& blocks = parts.diagram.blocks;
+  const auto found = std::find_if(blocks.begin(), blocks.end(), is_saturated);
+  return found == blocks.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -85,8 +96,18 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
     return warnings;
   states = begun;
   parts.workspace.reset();
-  runs = trouble->kind() == SolveError::Kind::no_rest && !any_saturates(parts.diagram);
-  if (runs && !trouble_of_settling()) return warnings;
+  runs = trouble->kind() == SolveError::Kind::no_rest;
+  if (runs && !trouble_of_settling()) {
+    const diagram::FlatBlock* const saturated = find_saturated(parts, states);
+    if (saturated == nullptr) return warnings;
+    text::Diagnostic told = trouble->diagnostics().front();
+    told.remedy += fmt::format(
+        ". If '{}' is to run to its limit, as a Schmitt trigger does, give it that in the "
+        "diagram: {} = {:.6g}",
+        saturated->path, saturated->definition->parameters[*saturated->saturation].name,
+        saturated->parameters[*saturated->saturation]);
+    throw SolveError(SolveError::Kind::no_rest, t, std::move(told));
+  }
   runs = false;
   states = begun;
   parts.workspace.reset();
