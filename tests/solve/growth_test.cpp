@@ -92,6 +92,18 @@ y = { type = "servo-amplifier", in = ["-u", "-0.5*y"], gain = 1e6, bandwidth = 1
   for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(y[k], t[k] < turns ? 1 : -1, 1e-7) << t[k];
 }
 
+// Steps that were short for its growth become long again once it stands at its limit, where nothing asks for
+// the Jacobian any more: 1500 in all, and not 10⁷.
+TEST(UnseenGrowth, KeepsNoStepsShortThatHasEnded) {
+  const Compiled made(R"toml(u = { type = "time-function", formula = "sin(6*time)" }
+a = { type = "servo-amplifier", in = ["-u", "-0.5*a"], limit = 0.6, gain = 100, bandwidth = 1000, initial = 1 }
+)toml");
+  using diagram::IntegrationMethod;
+  for (const auto method : {IntegrationMethod::bdf, IntegrationMethod::adams, IntegrationMethod::rodas})
+    EXPECT_EQ(row_values(run_of(made, {.until = 10, .max_steps = 10'000, .method = method}), "a").back(),
+              -0.6);
+}
+
 // Nor beside an integrator that stands at its own limit, and whose shares the Jacobian does not have: a turns
 // over where u passes ±1/2, to within 1e-5, first at t₁ = π/6.
 TEST(UnseenGrowth, IsNotOutrunBesideASlide) {

@@ -99,6 +99,10 @@ double GrowthWatch::own_growth(std::size_t state) const {
   return 0;
 }
 
+bool GrowthWatch::grows(double t, std::span<const double> x, double within, double part) {
+  return system_.jacobian(t, x.data(), jacobian_.data()) && system_.own_growth() * within > part;
+}
+
 double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
   // In powers of e: Euler's implicit step, the first one of BDF, turns the growth round from 1 on.
   constexpr double kMost = 0.5;

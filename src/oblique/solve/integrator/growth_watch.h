@@ -40,6 +40,9 @@ class GrowthWatch {
   /// states would run away, as if it held them.
   double outrun(double t, std::span<const double> x, double step);
 
+  /// Whether a state drives itself away at (t, x) by more than this part of itself within so many seconds.
+  bool grows(double t, std::span<const double> x, double within, double part);
+
   /// Looks at the end of the run at what has not been judged.
   void end();
 

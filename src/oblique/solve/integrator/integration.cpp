@@ -100,10 +100,14 @@ bool Integration::turns_too_far(double from, double t) {
 /// takes.
 bool Integration::outruns_growth(double from, double t) {
   constexpr double kPart = 0.25;  // of the time in which it grows by e
+  constexpr int kStepsBetween = 4;
   constexpr double kLess = kPart / 2;
   const double rate = growth_.outrun(t, solver_->states(), t - from);
   if (rate == 0) {
-    if (parts_.system.own_growth() * growth_limit_ < kLess) growth_limit_ = kNone;
+    // (The Jacobian that the solver has seen last may be older than what stands now.)
+    if (growth_limit_ < kNone && ++limited_steps_ % kStepsBetween == 0 &&
+        !growth_.grows(t, solver_->states(), growth_limit_, kLess))
+      growth_limit_ = kNone;
     return false;
   }
   growth_limit_ = kPart / rate;

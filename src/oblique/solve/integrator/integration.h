@@ -99,6 +99,7 @@ class Integration {
   std::optional<double> turn_limit_;               ///< [s] of the next step, where it is known
   double places_limit_ = kNone;                    ///< [s] of a step, for the places to look at in it
   double growth_limit_ = kNone;                    ///< [s] of a step, while it would outrun growth
+  int limited_steps_ = 0;                          ///< taken so
   std::size_t places_ = 0;                         ///< in the last step
   double length_ = 0;                              ///< [s] of the last step
   int ends_ = 0;                                   ///< of branches, since the last step
