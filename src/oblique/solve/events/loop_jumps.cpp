@@ -192,7 +192,7 @@ void LoopJumps::place_at_guesses(double t, std::span<const double> x) {
   }
 }
 
-bool LoopJumps::settle(double t, std::span<const double> x) {
+bool LoopJumps::settle(double t, std::span<const double> x, bool leaves) {
   bool any = false;
   for (Watched& watched : watched_) {
     const bool goes = watched.goes && !slide_.mixes(watched.loop);
@@ -203,7 +203,7 @@ bool LoopJumps::settle(double t, std::span<const double> x) {
     const bool jumps = part_between(unknowns_of(watched, unknowns_), unknowns_of(watched, now)) > kJump;
     const bool runs_away = !rests(watched, here->rates);
     if ((jumps || (watched.stable && runs_away)) &&
-        (go_from_before(watched, t, x) || (runs_away && leave(watched, t, x))))
+        (go_from_before(watched, t, x) || (leaves && runs_away && leave(watched, t, x))))
       any = true;
   }
   return any;

@@ -51,8 +51,9 @@ class LoopJumps {
   /// (That a guess is beyond a limit says nothing: what is behind it has not settled yet.)
   void place_at_guesses(double t, std::span<const double> x);
   /// Looks at all loops at (t, x), where everything has settled. True where one was put elsewhere: everything
-  /// is then to be settled again.
-  bool settle(double t, std::span<const double> x);
+  /// is then to be settled again. What `leaves` a solution that its elements do not hold, though they lead
+  /// nowhere, goes to another (where a run starts OtherSolutions look for that).
+  bool settle(double t, std::span<const double> x, bool leaves = true);
   /// Where something has no solution at (t, x): lets the first loop go from where it was noted, or from its
   /// guess, that comes to rest elsewhere, one of amplifiers too. False where there is none.
   bool go(double t, std::span<const double> x);

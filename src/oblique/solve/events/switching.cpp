@@ -85,7 +85,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (active() && settling_.settle(t, x)) return true;
     // What an event leads to may hang on where a loop goes before it.
     if (loops_go && !last && loop_jumps_.any()) {
-      if (loop_jumps_.settle(t, x)) return true;
+      if (loop_jumps_.settle(t, x, false)) return true;
       if (active()) event_functions_.evaluate(t, x, location_.announced());
     }
     const auto effect = active() ? serve_events(t, x, starting) : std::nullopt;
@@ -95,7 +95,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
       log_.forget_choices();
       return true;
     }
-    return last && std::exchange(loops_go, false) && loop_jumps_.settle(t, x);
+    return last && std::exchange(loops_go, false) && loop_jumps_.settle(t, x, false);
   };
   loop_jumps_.place_at_guesses(t, x);
   Circle circle;
