@@ -101,6 +101,12 @@ bool may_have_several(const network::Program& program, std::size_t loop) {
          (!program.loop_is_linear(loop) || (is_small(program, loop) && !switches_on(program, loop).empty()));
 }
 
+std::vector<double> loop_point(const network::Program& program, std::size_t loop, int k) {
+  std::vector<double> point = text::even_point(k, program.loops()[loop].unknowns.size());
+  for (double& unknown : point) unknown = kLoopReach * (2 * unknown - 1);
+  return point;
+}
+
 LoopJumps::LoopJumps(const network::Program& program, network::Workspace& workspace, const SlidingMode& slide,
                      const Thresholds& thresholds)
     : program_(program),
@@ -290,17 +296,15 @@ bool LoopJumps::follow(Watched& watched, Eigen::VectorXd& z, double t, std::span
 /// as they are its unknowns, have led nowhere from where it was, at the solution nearest to that at which it
 /// rests. It is sought from points that fill the machine's range evenly; false where there is none.
 bool LoopJumps::leave(Watched& watched, double t, std::span<const double> x) {
-  constexpr int kPoints = 24, kMostSearches = 8;
-  constexpr double kReach = 3;  // [machine unit]
+  constexpr int kMostSearches = 8;
   if (!watched.blind || watched.searches >= kMostSearches) return false;
   const std::vector<std::size_t>& unknowns = program_.loops()[watched.loop].unknowns;
   const Eigen::VectorXd before = unknowns_of(watched, unknowns_);
   double nearest = std::numeric_limits<double>::infinity();
   std::optional<network::Workspace> found;
-  for (int k = 1; k <= kPoints; ++k) {
+  for (int k = 1; k <= kLoopPoints; ++k) {
     network::Workspace trial = workspace_;
-    std::vector<double> z = text::even_point(k, unknowns.size());
-    for (double& unknown : z) unknown = kReach * (2 * unknown - 1);
+    const std::vector<double> z = loop_point(program_, watched.loop, k);
     trial.hold_loop(watched.loop, t, z, true);
     watched.placing.place(t, x.data(), trial, &thresholds_);
     trial.hold_loop(watched.loop, std::numeric_limits<double>::quiet_NaN(), {}, false);

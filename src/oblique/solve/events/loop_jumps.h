@@ -21,6 +21,12 @@ namespace oblique::solve {
 /// unknowns do not count.
 bool may_have_several(const network::Program& program, std::size_t loop);
 
+/// Where the unknowns of a loop begin when other solutions of it are sought: point k = 1 … kLoopPoints of
+/// those that fill ±kLoopReach [machine unit] evenly.
+constexpr int kLoopPoints = 24;
+constexpr double kLoopReach = 3;
+std::vector<double> loop_point(const network::Program& program, std::size_t loop, int k);
+
 /// Looks after the algebraic loops of elements without memory where an event has come. Between events such a
 /// loop keeps to its solution. An event may take that away, or leave the loop at one from which its elements
 /// would run away; and where there are several, Newton's method goes to any. The loop then goes where its

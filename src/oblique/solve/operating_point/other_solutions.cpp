@@ -11,22 +11,15 @@
 #include <oblique/solve/events/loop_jumps.h>
 #include <oblique/solve/run_errors.h>
 #include <oblique/solve/solve_error.h>
-#include <oblique/text/even_point.h>
 
 namespace oblique::solve {
 namespace {
-
-constexpr int kPoints = 24;
-constexpr double kReach = 3;  // [machine unit]
 
 /// After so many for each loop, which take some tenths of a second, no other points are tried.
 constexpr std::size_t kMostEvaluations = 300'000;
 
 LoopStart point(const network::Program& program, std::size_t loop, int k) {
-  const std::size_t n = program.loops()[loop].unknowns.size();
-  LoopStart start{loop, text::even_point(k, n), false};
-  for (double& unknown : start.unknowns) unknown = kReach * (2 * unknown - 1);
-  return start;
+  return {loop, loop_point(program, loop, k), false};
 }
 
 /// What stands otherwise in another solution.
@@ -58,7 +51,7 @@ bool leaves_reach(const network::Program& program, std::size_t loop, const std::
     for (std::size_t s = 0; s < signals.size(); ++s) {
       const std::string& name = program.signal_names()[s];
       const bool of_member = name == member || name.starts_with(member + ".");
-      if (of_member && std::abs(signals[s]) > kReach) return true;
+      if (of_member && std::abs(signals[s]) > kLoopReach) return true;
     }
   }
   return false;
@@ -96,7 +89,7 @@ StartChoice choose_start(const network::Program& program, double t, const std::s
   };
   std::optional<StartOutcome> solution = outcome({});
   for (const std::size_t loop : blind) {
-    for (int k = 1; k <= kPoints && !solution && evaluations < most_evaluations; ++k) {
+    for (int k = 1; k <= kLoopPoints && !solution && evaluations < most_evaluations; ++k) {
       choice.from = point(program, loop, k);
       choice.from.goes = true;
       solution = outcome(choice.from);
@@ -104,7 +97,7 @@ StartChoice choose_start(const network::Program& program, double t, const std::s
   }
   if (!solution) return {};
   for (const std::size_t loop : blind) {
-    for (int k = 1; k <= kPoints && solution->runs_away[loop] && evaluations < most_evaluations; ++k) {
+    for (int k = 1; k <= kLoopPoints && solution->runs_away[loop] && evaluations < most_evaluations; ++k) {
       LoopStart from = point(program, loop, k);
       from.goes = true;
       auto other = outcome(from);
@@ -115,7 +108,7 @@ StartChoice choose_start(const network::Program& program, double t, const std::s
   }
   for (const std::size_t loop : blind) {
     const bool is_far = leaves_reach(program, loop, solution->signals);
-    for (int k = 1; k <= kPoints && evaluations < most_evaluations; ++k) {
+    for (int k = 1; k <= kLoopPoints && evaluations < most_evaluations; ++k) {
       const auto other = outcome(point(program, loop, k));
       if (!other || (!is_far && leaves_reach(program, loop, other->signals))) continue;
       const auto difference = find_difference(program, loop, *solution, *other);
