@@ -430,6 +430,23 @@ y = {{ type = "minimum", x = "r", y = "-1.7*q" }}
   }
 }
 
+// What drives a limited lag that has come to rest within its limits is nothing but rounding, and nobody reads
+// its side there: no event comes of it. (It turned over ever faster, and the run was refused.)
+TEST(Events, WhatAnotherConditionMasksDoesNotTurnOver) {
+  const auto result = run_of(
+      Compiled(
+          R"toml(p = { type = "pulse-train", period = 1.5113510035063797e-06, width = 9.60776422381998e-07, delay = 4.406887959473133e-07, high = -0.89 }
+lag = { type = "transfer-lag", in = "p", time_constant = 3e-10, gain = 2, limit = 0.8 }
+)toml"),
+      {.until = 1e-5, .tolerance = 1e-10, .samples = 41, .method = diagram::IntegrationMethod::adams});
+  for (const EventRecord& event : result.events) EXPECT_THAT(event.what, ::testing::Not(HasSubstr("drive")));
+  // Seven pulses: two edges, each by a comparison and by what it sets, the limit reached, and left.
+  EXPECT_LE(result.event_count, 7 * 8);
+  // −1.78 is held at −0.8, or has decayed by e^(−1000) and more. Within a hundred tolerances.
+  const auto p = row_values(result, "p"), lag = row_values(result, "lag");
+  for (std::size_t r = 0; r < lag.size(); ++r) EXPECT_NEAR(lag[r], p[r] < 0 ? -0.8 : 0, 1e-8) << r;
+}
+
 // --- tables
 // --------------------------------------------------------------------------------------------------------
 

@@ -89,7 +89,8 @@ EventSearch::EventSearch(const network::Program& program, network::Workspace& wo
       states_(program.n_states()),
       rates_(program.n_states()),
       event_functions_(program.switches().size()),
-      event_function_rates_(program.switches().size()) {
+      event_function_rates_(program.switches().size()),
+      masked_(program.switches().size()) {
   for (const network::Switch& s : program.switches())
     check_interval_ = std::min(check_interval_, s.check_interval);
 }
@@ -169,7 +170,8 @@ void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
                     thresholds_.along_solution(s, at.roundings[s]);
     at.rates[s] = closed ? -event_function_rates_[s] : event_function_rates_[s];
     if (slide_.rests(s)) at.crossed[s] -= SlidingMode::drift();
-    if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s)) at.crossed[s] = -kInfinity;
+    if (program_.switches()[s].rate || slide_.holds(s) || slide_.follows(s) || masked_[s])
+      at.crossed[s] = -kInfinity;
   }
   const std::vector<double> of_slide = slide_crossed();
   at.crossed.insert(at.crossed.end(), of_slide.begin(), of_slide.end());
@@ -177,6 +179,22 @@ void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
   if (!beside || beside->second.size() != of_slide.size()) return;
   for (std::size_t k = 0; k < of_slide.size(); ++k)
     at.rates[n + k] = (beside->second[k] - of_slide[k]) / (beside->first - t);
+}
+
+/// Finds which switches need not be looked at: what nothing reads, because another one masks it that is
+/// looked at. It is put where it belongs when that one turns over, or anything else is settled; by itself it
+/// would turn at every rounding (as what drives a limited lag does, that is at rest within its limits). Of
+/// two that mask each other the last is looked at: in `out > limit and drive > 0` the limit.
+void EventSearch::find_masked() {
+  const network::SwitchStructure& structure = program_.switch_structure();
+  std::vector<bool> asleep(workspace_.discrete_states().size(), true);
+  for (std::size_t s = masked_.size(); s-- > 0;) {
+    const auto& masks = structure.masks[s];
+    masked_[s] = std::any_of(masks.begin(), masks.end(), [&](const network::Mask& mask) {
+      return !asleep[mask.discrete_state] && workspace_.discrete_state(mask.discrete_state) == mask.value;
+    });
+    asleep[program_.switches()[s].discrete_state] = masked_[s] || slide_.holds(s) || slide_.follows(s);
+  }
 }
 
 bool EventSearch::is_due(const Sample& at) const {
@@ -191,6 +209,7 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
   end_ = sample_times.empty() ? from : sample_times.back();
   reached_ = sample_times.empty() ? from : sample_times.back();  // where the solver was last
   branch_end_ = kInfinity;
+  find_masked();
   sample(from, solution, left);
   // Where the solver starts anew an event function may still lie within rounding of zero on the wrong side.
   for (double& value : left.crossed) value = std::min(value, 0.0);

@@ -70,6 +70,7 @@ class EventSearch {
   std::vector<double> slide_crossed();
   std::optional<std::pair<double, std::vector<double>>> slide_beside(double t, const Interpolant& solution);
   void sample(double t, const Interpolant& solution, Sample& at);
+  void find_masked();
   bool is_due(const Sample& at) const;
   std::optional<Found> between(const Sample& from, const Sample& to, const Interpolant& solution);
   std::optional<Found> split(const Sample& from, const Sample& to, const std::vector<double>& errors,
@@ -96,6 +97,7 @@ class EventSearch {
   Interruption interruption_;
   std::vector<NearMiss> near_misses_;
   std::vector<double> states_, rates_, event_functions_, event_function_rates_;
+  std::vector<bool> masked_;  ///< of each switch, see `find_masked`
 };
 
 }  // namespace oblique::solve
