@@ -27,6 +27,7 @@ class Finder {
     find_operands();
     find_couplings();
     structure_.masks = find_masks(network_);
+    find_what_events_read();
     return std::move(structure_);
   }
 
@@ -105,6 +106,18 @@ class Finder {
       structure_.unit.push_back(found->second);
       structure_.opposite.push_back(opposite);
     }
+  }
+
+  void find_what_events_read() {
+    structure_.read_by_events.assign(network_.switches.size(), false);
+    const auto read = [&](NodeId node) {
+      for (const std::uint32_t s : structure_.positions_in(node)) structure_.read_by_events[s] = true;
+    };
+    for (const Event& event : network_.events) {
+      read(event.condition);
+      for (const Event::Action& action : event.actions) read(action.value);
+    }
+    for (const NodeId end : network_.phase_ends) read(end);
   }
 
   void find_operands() {

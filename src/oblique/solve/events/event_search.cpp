@@ -181,18 +181,21 @@ void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
     at.rates[n + k] = (beside->second[k] - of_slide[k]) / (beside->first - t);
 }
 
-/// Finds which switches need not be looked at: what nothing reads, because another one masks it that is
-/// looked at. It is put where it belongs when that one turns over, or anything else is settled; by itself it
-/// would turn at every rounding (as what drives a limited lag does, that is at rest within its limits). Of
-/// two that mask each other the last is looked at: in `out > limit and drive > 0` the limit.
+/// Finds which switches need not be looked at: what nothing reads, because another one masks it that is looked
+/// at. It is put where it belongs when that one turns over, or anything else is settled; by itself it would
+/// turn at every rounding (as what drives a limited lag does, that is at rest within its limits). Of two that
+/// mask each other the last is looked at: in `out > limit and drive > 0` the limit. (Not what events read:
+/// while it lags behind, one would be due that is not.)
 void EventSearch::find_masked() {
   const network::SwitchStructure& structure = program_.switch_structure();
   std::vector<bool> asleep(workspace_.discrete_states().size(), true);
   for (std::size_t s = masked_.size(); s-- > 0;) {
     const auto& masks = structure.masks[s];
-    masked_[s] = std::any_of(masks.begin(), masks.end(), [&](const network::Mask& mask) {
-      return !asleep[mask.discrete_state] && workspace_.discrete_state(mask.discrete_state) == mask.value;
-    });
+    masked_[s] =
+        !structure.read_by_events[s] &&
+        std::any_of(masks.begin(), masks.end(), [&](const network::Mask& mask) {
+          return !asleep[mask.discrete_state] && workspace_.discrete_state(mask.discrete_state) == mask.value;
+        });
     asleep[program_.switches()[s].discrete_state] = masked_[s] || slide_.holds(s) || slide_.follows(s);
   }
 }
