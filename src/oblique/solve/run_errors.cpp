@@ -88,14 +88,17 @@ SolveError loop_error(const network::Program& program, const network::Workspace:
         path, t, loop.unknowns.size());
     remedy = "change a weight, or put an integrator or a servo amplifier of finite bandwidth into the loop";
   } else if (trouble.failure == network::LoopFailure::lost) {
+    const bool is_held = program.loop_has_branches(trouble.loop);
     what = fmt::format(
         "the algebraic loop {} loses its solution at t = {:.6g} s: the branch that it was on ends near {} = "
-        "{:.6g}, and its amplifiers find no other operating point",
-        path, t, unknown.name, trouble.value);
-    remedy =
+        "{:.6g}, and {}",
+        path, t, unknown.name, trouble.value,
+        is_held ? "its amplifiers find no other operating point" : "its elements lead to no other");
+    remedy = fmt::format(
         "check that its equation can be satisfied (a root of a negative number, a triangle that cannot "
-        "close?), "
-        "or give its amplifier a finite gain and bandwidth, or a 'limit', to see where it goes";
+        "close?), or {}, to see where it goes",
+        is_held ? "give its amplifier a finite gain and bandwidth, or a 'limit'"
+                : "put a lag, or a servo amplifier, into it");
   } else {
     what = fmt::format("the algebraic loop {} has no solution near {} = {:.6g} at t = {:.6g} s", path,
                        unknown.name, trouble.value, t);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ideal amplifiers where the solution of their loop ends, or is lost.
+// Algebraic loops where the branch of solutions that they are on ends, or is lost.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -50,6 +50,81 @@ TEST(Branch, EndsWithAJumpThatIsAnEvent) {
   for (std::size_t r = 0; r < x.size(); ++r) {
     EXPECT_NEAR(y[r] * y[r] * y[r] - y[r], x[r], 1e-12);
     EXPECT_EQ(y[r] > 0, x[r] > kFold) << x[r];  // on either side of the jump the branch that is held
+  }
+}
+
+// z = −T asinh((u − g z)/(2 s)) with g T > 2 s has two solutions that its elements hold, as a comparator with
+// hysteresis. Each ends where (u − g z)² = (g T)² − 4 s², at |u| = 0.814139808085906: both by hand. However
+// far the rows lie apart the element stays until then, and not a step longer; it leapt where they were far
+// apart.
+TEST(Branch, OfElementsWithoutMemoryEndsInTime) {
+  const double end = 0.8141398080859045, fold = 5 + std::asin(end / 3) / (0.2 * std::numbers::pi);
+  for (const int samples : {13, 121, 1201}) {
+    const auto result = run_of(Compiled(R"toml(u = { type = "sine-source", frequency = 0.1, amplitude = 3 }
+z = { type = "logarithmic-amplifier", in = ["-1.7*z", "u"], saturation = 0.1875, thermal = 0.625, pair = 1 }
+)toml"),
+                               {.until = 12, .samples = samples});
+    std::vector<double> times;
+    for (const EventRecord& event : result.events) {
+      if (event.what.starts_with("jumps where its branch ends: z from ")) times.push_back(event.time);
+    }
+    ASSERT_EQ(times.size(), 2U) << samples;
+    EXPECT_NEAR(times[0], fold, 3e-9) << samples;      // found to 1e-10 of the run
+    EXPECT_NEAR(times[1], fold + 5, 3e-9) << samples;  // half a period later
+    const auto u = row_values(result, "u"), z = row_values(result, "z");
+    for (std::size_t r = 0; r < u.size(); ++r) {
+      const double t = 12.0 * static_cast<double>(r) / (samples - 1);
+      EXPECT_NEAR(z[r], -0.625 * std::asinh((u[r] - 1.7 * z[r]) / 0.375), 1e-12) << t;
+      EXPECT_EQ(z[r] < 0, t < fold || t > fold + 5) << t;
+    }
+  }
+}
+
+// A diode amplifier is at its limit before the branch of what reads it would end: where the solver looks
+// beyond the limit there is no solution, and the other one is not gone to. It stays below zero to the end, as
+// the same loop by amplifiers that are slow does.
+TEST(Branch, ThatEndsOnlyBeyondALimitIsKept) {
+  for (const int samples : {41, 601}) {
+    const auto result = run_of(Compiled(R"toml(one = { type = "constant" }
+v = { type = "integrator", in = "-6*one", initial = 0.684653196882 }
+h = { type = "integrator", in = "v" }
+d = { type = "diode-amplifier", in = "-2*v", low = -0.70703125, high = 0.9623828125, resistance = 0.03125 }
+l = { type = "logarithmic-amplifier", in = ["0.3*d", "2*d", "-2*v"], saturation = 0.21875, thermal = 0.2709765625, pair = 1 }
+z = { type = "logarithmic-amplifier", in = ["-2*l", "-1.7*z", "2*h"], saturation = 0.1875, thermal = 0.625, pair = 1 }
+)toml"),
+                               {.until = 0.228217732294,
+                                .tolerance = 1e-7,
+                                .samples = samples,
+                                .method = diagram::IntegrationMethod::rodas});
+    for (const double z : row_values(result, "z")) EXPECT_LT(z, -1) << samples;
+  }
+}
+
+// Nothing leads an equation of one's own from the end of its branch to another.
+TEST(Branch, OfAnEquationOfOnesOwnIsNotLeft) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("own-cubic", R"toml(
+[inputs]
+in = {}
+[outputs]
+out = {}
+[implicit]
+z = "z^3 - z - in"
+[start]
+z = -1.2
+[equations]
+out = "z"
+)toml");
+  const Compiled made(std::string(kRising) + "y = { type = \"own-cubic\", in = \"x\" }\n", "", library);
+  for (const int samples : {5, 2001}) {
+    const auto error = failure_of(made, {.until = 2, .samples = samples});
+    ASSERT_TRUE(error.has_value());
+    EXPECT_NEAR(error->time, 0.6 + kFold, 1e-8) << samples;
+    EXPECT_THAT(error->message,
+                HasSubstr("loses its solution at t = 0.9849 s: the branch that it was on ends near y.z = "
+                          "-0.5773"));
+    EXPECT_THAT(error->message, HasSubstr("and its elements lead to no other"));
+    EXPECT_THAT(error->message,
+                HasSubstr("or put a lag, or a servo amplifier, into it, to see where it goes"));
   }
 }
 

@@ -155,20 +155,30 @@ LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<cons
     search = newton(loop, body, slots);
   }
   solved_ = search.failure == LoopFailure::none;
-  if (!solved_ && find_near_root(loop, slots, origin_[0], [&] { evaluate(body, slots); }))
+  if (!solved_ && find_near_root(loop, slots, origin_[0], [&] { evaluate(body, slots); })) {
+    solved_ = known;
     return LoopFailure::none;
-  if (!solved_ || !known || search.even_order) return search.failure;
+  }
+  if (!known) return search.failure;
+  if (solved_ && search.even_order) return LoopFailure::none;
+  if (!solved_ && (!following_ || search.failure != LoopFailure::diverged)) return search.failure;
   const bool is_near = longest_change(loop, slots) < kLongWay;
-  if (matrix_.determinant_sign() == search.first_sign &&
+  if (solved_ && matrix_.determinant_sign() == search.first_sign &&
       (is_near || keeps_sign(loop, body, slots, origin_, search.first_sign)))
     return LoopFailure::none;
   read(loop, slots, target_);
   write(loop, slots, origin_);
   const Search shorter = newton(loop, body, slots, Steps::parts);
-  if (shorter.failure != LoopFailure::none || matrix_.determinant_sign() != shorter.first_sign) {
-    write(loop, slots, target_);
-    evaluate(body, slots);
+  if (shorter.failure == LoopFailure::none && matrix_.determinant_sign() == shorter.first_sign) {
+    solved_ = true;
+    return LoopFailure::none;
   }
+  if (following_) {
+    solved_ = true;  // where it was
+    return LoopFailure::lost;
+  }
+  write(loop, slots, target_);
+  evaluate(body, slots);
   return LoopFailure::none;
 }
 

@@ -27,7 +27,8 @@ enum class LoopFailure : std::uint8_t {
 ///
 /// Of a loop with branches, a solution is one that the amplifiers reach from the last: Newton's method where
 /// it stays on the branch (it never turns back, and the determinant of dg/dz keeps its sign), else the motion
-/// of the amplifiers themselves, infinitely fast, until they rest.
+/// of the amplifiers themselves, infinitely fast, until they rest. Of one without amplifiers it is one on the
+/// same branch; any where there is none, and no branch is followed.
 class LoopWorkspace {
  public:
   explicit LoopWorkspace(std::size_t size);
@@ -42,7 +43,7 @@ class LoopWorkspace {
   /// How often its equations have been evaluated so far.
   std::size_t evaluations() const { return evaluations_; }
 
-  /// While a branch is followed, `lost` is told where it ends, and the amplifiers do not leave it.
+  /// While a branch is followed, `lost` is told where it ends, and nothing leaves it.
   void follow_branch(bool follow) { following_ = follow; }
 
   /// Forgets what it knows of the last solution, but not what is held.

@@ -83,7 +83,7 @@ BranchWatch::BranchWatch(const network::Program& program, network::Workspace& wo
       judged_(program.loops().size()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
     told_.push_back(!is_judged(program, loop));
-    if (!program.loop_has_branches(loop)) continue;
+    if (program.loop_is_linear(loop)) continue;
     any_ = true;
     unseen_ = unseen_ || !program.derivatives_need(loop);
   }
@@ -133,25 +133,29 @@ BranchWatch::Ahead BranchWatch::look_ahead(double& t, double segment_end, std::v
   return Ahead::end;
 }
 
-void BranchWatch::pass(double t, const std::vector<double>& states, const std::function<void()>& go) {
+void BranchWatch::pass(double t, const std::vector<double>& states,
+                       const std::function<bool(std::size_t)>& go) {
   std::vector<double> before, signals(program_.n_signals());
   for (std::size_t u = 0; u < program_.unknowns().size(); ++u) before.push_back(workspace_.unknown(u));
-  go();
+  const std::size_t lost = workspace_.trouble().loop;
+  const bool gone = go(lost);
   const auto here = program_.signals(t, states.data(), signals.data(), workspace_);
   if (!here) {
     network::Workspace::Trouble trouble = workspace_.trouble();
-    if (program_.loop_has_branches(trouble.loop)) trouble.failure = network::LoopFailure::lost;
+    if (!program_.loop_is_linear(trouble.loop)) trouble.failure = network::LoopFailure::lost;
     throw loop_error(program_, trouble, t, file_);
   }
   for (std::size_t loop = 0; loop < program_.loops().size(); ++loop) {
-    if (!program_.loop_has_branches(loop)) continue;
+    if (program_.loop_is_linear(loop)) continue;
     const bool jumps = change_of(program_, workspace_, loop, before) > kJump;
-    const AmplifierMotion motion = amplifier_motion(program_, loop, here->loop_jacobian(loop));
-    if (motion != AmplifierMotion::run_away) {
+    const bool is_held = program_.loop_has_branches(loop);
+    const AmplifierMotion motion =
+        is_held ? amplifier_motion(program_, loop, here->loop_jacobian(loop)) : AmplifierMotion::rest;
+    if (is_held ? motion != AmplifierMotion::run_away : loop != lost || gone) {
       if (!jumps) continue;
       std::vector<std::string> ways;
       for (const std::size_t u : program_.loops()[loop].unknowns) {
-        if (held_by_amplifier(program_, u))
+        if (held_by_amplifier(program_, u) || !is_held)
           ways.push_back(fmt::format("{} from {:.6g} to {:.6g}", program_.unknowns()[u].name, before[u],
                                      workspace_.unknown(u)));
       }

@@ -37,7 +37,7 @@ std::vector<text::Diagnostic> unstable_branches(const network::Program& program,
                                                 network::Workspace& workspace, double t,
                                                 const std::vector<double>& states, const std::string& file);
 
-/// Watches during a run for ends of the branches on which ideal amplifiers solve their algebraic loops.
+/// Watches during a run for ends of the branches of solutions on which algebraic loops are.
 class BranchWatch {
  public:
   /// All must outlive this.
@@ -60,10 +60,12 @@ class BranchWatch {
   /// along a straight line.
   Ahead look_ahead(double& t, double segment_end, std::vector<double>& states, const Interpolant& solution);
 
-  /// Lets the amplifiers of all loops go, infinitely fast, to where they rest at (t, states), after a branch
-  /// has ended there; to limits and the like by `go`. A loop that has no rest in reach but a solution that
-  /// goes on smoothly keeps to that. Throws SolveError for any other. The workspace must not follow branches.
-  void pass(double t, const std::vector<double>& states, const std::function<void()>& go);
+  /// Lets the amplifiers of all loops go, infinitely fast, to where they rest at (t, states), after the
+  /// branch of a loop has ended there, which was the last that was not solved; first `go` of that one: to
+  /// limits and the like, or where elements without memory lead it. A loop that has no rest in reach but a
+  /// solution that goes on smoothly keeps to that. Throws SolveError for any other. The workspace must not
+  /// follow branches.
+  void pass(double t, const std::vector<double>& states, const std::function<bool(std::size_t)>& go);
 
   /// Tells, once of each, of loops that an event at t has left where their amplifiers do not rest; those that
   /// are `told` of already are noted alone; but of none that a slide `mixes`.

@@ -220,10 +220,11 @@ bool LoopJumps::go(double t, std::span<const double> x) {
                      [&](Watched& watched) { return go_from_before(watched, t, x); });
 }
 
-bool LoopJumps::go_past_branch_end(double t, std::span<const double> x) {
+bool LoopJumps::go_past_branch_end(std::size_t lost, double t, std::span<const double> x) {
   begin();
   return std::any_of(watched_.begin(), watched_.end(), [&](Watched& watched) {
-    return watched.goes && !watched.blind && go_from_before(watched, t, x);
+    if (!watched.goes || (watched.blind && watched.loop != lost)) return false;
+    return go_from_before(watched, t, x) || leave(watched, t, x);
   });
 }
 

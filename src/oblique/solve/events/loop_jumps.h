@@ -63,9 +63,10 @@ class LoopJumps {
   /// Where something has no solution at (t, x): lets the first loop go from where it was noted, or from its
   /// guess, that comes to rest elsewhere, one of amplifiers too. False where there is none.
   bool go(double t, std::span<const double> x);
-  /// Where a branch has ended between the switches as they stand: lets the first loop of amplifiers on which
-  /// a switch acts, as a limit, go from there that comes to rest elsewhere. False where there is none.
-  bool go_past_branch_end(double t, std::span<const double> x);
+  /// Where the branch of the loop `lost` has ended between the switches as they stand: lets the first loop go
+  /// from there that comes to rest elsewhere, that one or one of amplifiers on which a switch acts, as a
+  /// limit. False where there is none.
+  bool go_past_branch_end(std::size_t lost, double t, std::span<const double> x);
 
  private:
   struct Watched {

@@ -54,8 +54,8 @@ class Switching {
   }
   /// Lets the amplifiers of a loop whose branch has ended at (t, x) go to where a switch on it, as a limit,
   /// lets them rest; false where there is no such place.
-  bool go_past_branch_end(double t, std::span<const double> x) {
-    return loop_jumps_.go_past_branch_end(t, x);
+  bool go_past_branch_end(std::size_t lost, double t, std::span<const double> x) {
+    return loop_jumps_.go_past_branch_end(lost, t, x);
   }
   /// Of each algebraic loop: whether its elements would leave the solution at (t, x). (See LoopJumps.)
   std::vector<bool> loops_that_run_away(double t, std::span<const double> x) {

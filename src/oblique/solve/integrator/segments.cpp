@@ -46,7 +46,9 @@ void Segments::follow_phases(double t) {
 void Segments::settle(double t, bool at_branch_end) {
   parts_.workspace.follow_branches(false);
   if (at_branch_end)
-    parts_.branches.pass(t, parts_.states, [&] { parts_.switching.go_past_branch_end(t, parts_.states); });
+    parts_.branches.pass(t, parts_.states, [&](std::size_t lost) {
+      return parts_.switching.go_past_branch_end(lost, t, parts_.states);
+    });
   parts_.switching.settle(t, parts_.states);
   follow_phases(t);
   // A loop that no derivative and no comparison needs leaves its branch here, too, if it must.
