@@ -489,6 +489,29 @@ e = { type = "integrator", in = [], start = "pulse" }
     EXPECT_THAT(testing::row_values(result, name), ::testing::Each(0.7)) << name;
 }
 
+// And so does what is brought to rest then: amplifiers, and what has a bandwidth. A chain of two starts, one
+// through an amplifier behind the other. To the finite gain of 1e6 of the amplifiers.
+TEST(Event, AtTheStartIsWhereAmplifiersHaveComeToRest) {
+  const auto result = testing::run_of(testing::Compiled(R"toml(k = { type = "constant", value = 0.64 }
+root = { type = "square-root", in = "k" }
+quotient = { type = "divider", numerator = "k", denominator = "root" }
+summer = { type = "summer", in = "-k", bandwidth = "1 MHz" }
+a = { type = "integrator", in = "-a", start = "root" }
+b = { type = "integrator", in = [], start = "quotient" }
+c = { type = "integrator", in = [], start = "summer" }
+again = { type = "square-root", in = "a" }
+d = { type = "integrator", in = [], start = "again" }
+)toml"));
+  using ::testing::DoubleNear;
+  using ::testing::Each;
+  const auto a = testing::row_values(result, "a");
+  EXPECT_NEAR(a.front(), 0.8, 1e-5);
+  EXPECT_NEAR(a.back(), 0.8 * std::exp(-1), 1e-5);
+  EXPECT_THAT(testing::row_values(result, "b"), Each(DoubleNear(0.8, 1e-5)));
+  EXPECT_THAT(testing::row_values(result, "c"), Each(DoubleNear(-0.64, 1e-5)));
+  EXPECT_THAT(testing::row_values(result, "d"), Each(DoubleNear(std::sqrt(0.8), 1e-5)));
+}
+
 // The initial value of x is the other way round only while the switch stands where it does not belong.
 TEST(Event, ASwitchMayCutACircleOfInitialValues) {
   for (const char* const control : {"one", "-one"}) {

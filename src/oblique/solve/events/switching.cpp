@@ -18,6 +18,10 @@ namespace {
 
 constexpr int kMostRounds = 1000;  ///< of events that set each other off at one instant
 
+/// Of 1 + its magnitude: an initial value that differs by less is the one that has been taken, as far as what
+/// it follows from has come to rest.
+constexpr double kSameStart = 1e-12;
+
 }  // namespace
 
 Switching::Switching(const network::Program& program, network::Workspace& workspace, double span,
@@ -70,6 +74,16 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
       take_starts(program_, workspace_, t, x, log_, file_);
     }
   };
+  // What has come to rest may be what states start from.
+  const auto starts_move = [&] {
+    const std::vector<double> before = x;
+    take();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (std::abs(x[i] - before[i]) > kSameStart * (1 + std::abs(x[i]))) return true;
+    }
+    x = before;
+    return false;
+  };
   const auto goes_on = [&] {
     settling_.begin();
     if (takes) take();
@@ -82,6 +96,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     }
     first = false;
     settling_.begin();
+    if (takes && starts_move()) return true;
     if (active() && settling_.settle(t, x)) return true;
     // What an event leads to may hang on where a loop goes before it.
     if (loops_go && !last && loop_jumps_.any()) {
