@@ -10,19 +10,24 @@ std::vector<bool> driven_states(const network::Program& program, std::span<const
   if (!program.derivatives(t, x.data(), here.data(), workspace)) return std::vector<bool>(n, true);
   std::vector<bool> driven(n, false);
   std::vector<std::size_t> found;
+  const network::SwitchStructure& structure = program.switch_structure();
+  std::vector<bool> slides(structure.unit.size(), false);
   for (const std::uint32_t unit : units) {
-    for (const std::uint32_t s : program.switch_structure().members[unit]) {
-      const std::uint32_t discrete_state = program.switches()[s].discrete_state;
-      const double position = workspace.discrete_state(discrete_state);
-      workspace.set_discrete_state(discrete_state, 1 - position);
-      const bool known = program.derivatives(t, x.data(), there.data(), workspace);
-      workspace.set_discrete_state(discrete_state, position);
-      if (!known) return std::vector<bool>(n, true);
-      for (std::size_t i = 0; i < n; ++i) {
-        if (driven[i] || there[i] == here[i]) continue;
-        driven[i] = true;
-        found.push_back(i);
-      }
+    for (const std::uint32_t s : structure.members[unit]) slides[s] = true;
+  }
+  const std::vector<bool> follows = structure.followers_of(slides);
+  for (std::size_t s = 0; s < slides.size(); ++s) {
+    if (!slides[s] && !follows[s]) continue;
+    const std::uint32_t discrete_state = program.switches()[s].discrete_state;
+    const double position = workspace.discrete_state(discrete_state);
+    workspace.set_discrete_state(discrete_state, 1 - position);
+    const bool known = program.derivatives(t, x.data(), there.data(), workspace);
+    workspace.set_discrete_state(discrete_state, position);
+    if (!known) return std::vector<bool>(n, true);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (driven[i] || there[i] == here[i]) continue;
+      driven[i] = true;
+      found.push_back(i);
     }
   }
   const network::SparsePattern& pattern = program.jacobian_pattern();
