@@ -423,5 +423,38 @@ y = { type = "backlash", play = 0.2, rate = 1000, in = "p" }
   }
 }
 
+// A pulse that begins with the run, or a flip-flop that is set then, takes x at once from the level on which
+// it would slide without: x' = 2 p − sign x rises by 1, falls back and stays.
+TEST(Slides, MayEndWhereTheRunBegins) {
+  const auto pulsed = run_of(Compiled(R"toml(p = { type = "pulse-train", width = 0.4 }
+s = { type = "sign", in = "x" }
+x = { type = "integrator", in = ["2*p", "-s"] }
+)toml"),
+                             {.until = 2, .samples = 41});
+  const auto x = row_values(pulsed, "x");
+  for (std::size_t r = 0; r < x.size(); ++r) {
+    const double t = 0.05 * static_cast<double>(r % 20);
+    EXPECT_NEAR(x[r], t <= 0.4 ? t : std::max(0.8 - t, 0.0), 1e-12) << r;  // straight lines
+  }
+  const auto set = run_of(Compiled(R"toml(one = { type = "constant" }
+f = { type = "flip-flop", set = "one" }
+s = { type = "sign", in = "x" }
+x = { type = "integrator", in = ["2*f.out", "-s"] }
+)toml"));
+  EXPECT_NEAR(row_values(set, "x").back(), 1, 1e-12);
+}
+
+// At the level no comparison holds, and nothing moves; beyond it x' = |y| would. Settling the start went from
+// the one to the other and back.
+TEST(Slides, DoNotMoveWhatRestsAtItsLevelWhereTheRunBegins) {
+  const auto result = run_of(Compiled(R"toml(zero = { type = "constant", value = 0 }
+y = { type = "integrator", initial = 0.5, in = "-2*y" }
+s = { type = "electronic-switch", on = "y", off = "zero", control = "x", threshold = 0 }
+magnitude = { type = "absolute-value", in = "s" }
+x = { type = "integrator", in = "magnitude" }
+)toml"));
+  EXPECT_THAT(row_values(result, "x"), ::testing::Each(0.0));
+}
+
 }  // namespace
 }  // namespace oblique::solve

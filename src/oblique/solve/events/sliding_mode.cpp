@@ -161,6 +161,7 @@ void SlidingMode::load_base() {
 }
 
 void SlidingMode::put_at_rest(bool rests) {
+  if (!active()) return;
   load_base();
   for (std::size_t u = 0; rests && u < units_.size(); ++u) {
     const auto above = rests_above(u);

@@ -377,20 +377,16 @@ SolveError SwitchSettling::no_position(std::uint32_t s, double t) const {
 bool SwitchSettling::settle(double t, std::span<const double> x) {
   constexpr std::size_t kInOrder = 2;  // rounds before
   const std::size_t most = 2 * event_functions_.size() + 10;
-  bool any = false;
+  const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   Units at_zero;
   std::vector<std::uint32_t> turned, restless;
   for (std::size_t round = 0;; ++round) {
     event_functions_.evaluate(t, x, announced_);
     if (chained_ || round == kInOrder) {
-      const std::vector<double> before(workspace_.discrete_states().begin(),
-                                       workspace_.discrete_states().end());
       turn_in_order(t, x);
-      any = any || !std::equal(before.begin(), before.end(), workspace_.discrete_states().begin());
       event_functions_.evaluate(t, x, announced_);
     }
     if (turn_by_event_functions(t, at_zero, turned)) {
-      any = true;
       if (round <= most) continue;
       // These go on turning over: their event functions depend on their own positions.
       restless.insert(restless.end(), turned.begin(), turned.end());
@@ -405,12 +401,11 @@ bool SwitchSettling::settle(double t, std::span<const double> x) {
       event_functions_.evaluate(t, x, announced_);
       return true;
     }
-    if (at_zero.empty()) return any;
-    const std::vector<double> before(workspace_.discrete_states().begin(),
-                                     workspace_.discrete_states().end());
+    if (at_zero.empty()) {
+      return slide_.units() != slid_ ||
+             !std::equal(before.begin(), before.end(), workspace_.discrete_states().begin());
+    }
     decide(at_zero, t, x);
-    any = any || slide_.units() != slid_ ||
-          !std::equal(before.begin(), before.end(), workspace_.discrete_states().begin());
   }
 }
 

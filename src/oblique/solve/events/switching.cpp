@@ -60,7 +60,8 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
                   [](const network::State& state) { return state.start_node.has_value(); });
   // States take their starts again from what events change at this instant, until one sets states itself.
   bool starting = true, takes = any_start, first = true, has_gone = false;
-  bool last = false;  // loops go where everything else has settled
+  bool last = false;     // loops go where everything else has settled
+  bool several = false;  // positions agree, of which settling chooses the one after the other
   const auto take = [&] {
     const std::vector<double> before = x;
     try {
@@ -97,7 +98,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     first = false;
     settling_.begin();
     if (takes && starts_move()) return true;
-    if (active() && settling_.settle(t, x)) return true;
+    if (active() && settling_.settle(t, x) && !several) return true;
     // What an event leads to may hang on where a loop goes before it.
     if (loops_go && !last && loop_jumps_.any()) {
       if (loop_jumps_.settle(t, x, false)) return true;
@@ -118,7 +119,8 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (round > kMostRounds || circle.closes(workspace_.discrete_states(), x)) {
       // Loops may lead the events back that have led them on: they come last then. Tables may lead a loop in
       // a circle that begins where others did not stand yet.
-      if (std::exchange(last, true) && (std::exchange(has_gone, true) || !loop_jumps_.go(t, x)))
+      if (std::exchange(last, true) && (std::exchange(has_gone, true) || !loop_jumps_.go(t, x)) &&
+          std::exchange(several, true))
         throw log_.endless("the start does not settle", t);
       circle = {};
       round = 0;
