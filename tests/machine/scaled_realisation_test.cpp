@@ -511,5 +511,20 @@ r   = { type = "integrator", in = "v", initial = 1 }
   for (const SignalScale& scale : made.scales) EXPECT_GT(scale.unit, 0.1) << scale.signal;
 }
 
+// From where an amplifier goes to rest is scaled with it, but not beyond the machine: 1 of a root that is
+// 0.04 at most would be 25 machine units, from which it went to the wrong limit.
+TEST(ScaledRealisation, LetsAmplifiersComeToRestFromWhereTheyCanBe) {
+  const diagram::Diagram diagram = parsed(R"toml(
+[run]
+until = 3
+[blocks]
+x = { type = "integrator", in = "-x", initial = 0.0015 }
+r = { type = "square-root", in = "x" }
+)toml");
+  const ScaledRealisation made = realise_scaled(diagram, shipped_blocks(), desk_machine());
+  EXPECT_THAT(diagram::write_diagram(made.diagram), HasSubstr("initial = 1 }"));
+  EXPECT_LT(testing::difference(diagram, made.diagram), 1e-7);
+}
+
 }  // namespace
 }  // namespace oblique::machine

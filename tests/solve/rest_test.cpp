@@ -326,5 +326,19 @@ w = { type = "servo-amplifier", in = ["lines"], initial = -2 }
   EXPECT_NEAR(testing::row_values(run, "w").front(), 1.5, 1e-5);
 }
 
+// An amplifier is never beyond its limit: an `initial` of 25 is that limit, 1.2. From 25 the square of y,
+// that is limited, too, led it to the other limit.
+TEST(Rest, IsSoughtFromTheLimitWhereTheGuessLiesBeyond) {
+  for (const double side : {1, -1}) {
+    const auto run = testing::run_of(testing::Compiled(fmt::format(
+        R"toml(u = {{ type = "constant", value = 0.25 }}
+square = {{ type = "multiplier", in = ["y", "y"], limit = 1.2 }}
+y = {{ type = "servo-amplifier", in = ["{0}*square", "{1}*u"], gain = 1e5, limit = 1.2, initial = {2} }}
+)toml",
+        side, -side, 25 * side)));
+    EXPECT_NEAR(testing::row_values(run, "y").front(), 0.5 * side, 1e-5) << side;  // to the gain
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -202,7 +202,10 @@ class Writer {
       if (loop && parameter.name == "gain" && machine_states_gain(*block.definition)) continue;
       const bool turns =
           !stays_as_it_is(element.role) && signals_.is_negative(e) && turns_with_the_signal(parameter.name);
-      const double value = turns ? -block.parameters[k] : block.parameters[k];
+      double value = turns ? -block.parameters[k] : block.parameters[k];
+      // From where an amplifier goes to rest: no farther than it goes at all.
+      if (element.role == Role::open_amplifier && parameter.name == "initial")
+        value = std::clamp(value, -1.0, 1.0);
       if (loop || value != element.definition->parameters[*written].default_value)
         settings.push_back(diagram::number_setting(parameter.name, value));
     }
