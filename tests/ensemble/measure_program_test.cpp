@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/ensemble/study/measure_program.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -34,7 +37,7 @@ SampledRun sampled(double end, int rows, X x, Y y) {
 }
 
 double measure(const std::string& text, const SampledRun& run) {
-  return MeasureProgram(text, true, column_of).value(run, {0.25, 0.125});
+  return MeasureProgram(text, true, {}, column_of).value(run, {0.25, 0.125});
 }
 
 // 101 rows over a second, 16 and 32 a period: through six points a sine is interpolated to
@@ -161,6 +164,22 @@ TEST(Measure, CombinesNumbers) {
   EXPECT_NEAR(measure("max(abs(x - exact( B.x )))", run), 1, 1e-14);
 }
 
+// An output may be called anything: the whole argument is its name first, and an expression only where there
+// is no such output.
+TEST(Measure, TakesAnOutputByItsName) {
+  const auto run = sampled(
+      1, 11, [](double t) { return 2 + t; }, [](double t) { return 4 - t; });
+  const std::vector<std::string> names = {"x-y", "2*x", "time", "pi", "d(x)/dt", "x dot", "a,b"};
+  const auto second = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end() ? std::size_t{2} : column_of(name);
+  };
+  for (const std::string& name : names)
+    EXPECT_EQ(MeasureProgram("end(" + name + ")", false, names, second).value(run, {}), 3) << name;
+  EXPECT_EQ(MeasureProgram("max(x-y) - end(x - y)", false, names, second).value(run, {}), 4);
+  EXPECT_EQ(MeasureProgram("end(time + 1)", false, names, second).value(run, {}), 2);
+  EXPECT_THROW(MeasureProgram("time(x-y)", false, names, second), text::ExpressionError);
+}
+
 TEST(Measure, IsNoNumberWhereTheRunHasNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto run = sampled(
@@ -196,7 +215,7 @@ TEST(Measure, IsRefusedAtItsPlace) {
   };
   for (const Refused& one : refused) {
     try {
-      MeasureProgram(one.text, true, column_of);
+      MeasureProgram(one.text, true, {}, column_of);
       ADD_FAILURE() << one.text;
     } catch (const text::ExpressionError& error) {
       if (one.column == 0) continue;
@@ -205,8 +224,8 @@ TEST(Measure, IsRefusedAtItsPlace) {
       EXPECT_EQ(error.column, one.column) << one.text;
     }
   }
-  EXPECT_THROW(MeasureProgram("error()", false, column_of), text::ExpressionError);
-  EXPECT_THROW(MeasureProgram("end(exact(B.x))", false, column_of), text::ExpressionError);
+  EXPECT_THROW(MeasureProgram("error()", false, {}, column_of), text::ExpressionError);
+  EXPECT_THROW(MeasureProgram("end(exact(B.x))", false, {}, column_of), text::ExpressionError);
 }
 
 // Rows 1, 0, 1, 0: beside each of the two inner ones a line misses at the most |1 − 2·0 + 1|/8 of the

@@ -49,6 +49,7 @@ class DiagramSubject : public Subject {
   solve::RunOptions run_options() const override { return solve::options_of(diagram_.run); }
   const diagram::Diagram& diagram() const override { return diagram_; }
 
+  std::vector<std::string> output_names() const override { return all_outputs_; }
   std::vector<Measure> usual_measures() const override {
     std::vector<Measure> measures;
     for (const std::string& name : all_outputs_) {

@@ -91,8 +91,9 @@ void move_columns(Expression& e, std::size_t by) {
 /// is an expression as any other.
 class MeasureProgram::Reader {
  public:
-  Reader(std::string_view text, bool mechanism, const ColumnOf& column_of)
-      : text_(text), mechanism_(mechanism), column_of_(column_of) {}
+  Reader(std::string_view text, bool mechanism, std::span<const std::string> outputs,
+         const ColumnOf& column_of)
+      : text_(text), mechanism_(mechanism), outputs_(outputs), column_of_(column_of) {}
 
   void read(MeasureProgram& program) {
     std::string outer(text_);
@@ -175,6 +176,14 @@ class MeasureProgram::Reader {
     }
     if (is_empty)
       fail(call.begin, fmt::format("{}() says not of what", call.name), fmt::format("{}(x)", call.name));
+    if (is_output(argument) && function != Function::time) {
+      Expression output;
+      output.kind = Kind::name;
+      output.name = "output";
+      number.argument =
+          RowExpression(output, [&](const Expression&) { return column_of_(std::string(argument)); });
+      return number;
+    }
     if (call.arguments > 1)
       fail(call.begin, fmt::format("{} was given {} arguments", call.name, call.arguments), "1");
     const Expression expression = argument_of(argument, begin, call.name);
@@ -190,6 +199,10 @@ class MeasureProgram::Reader {
       for (const Expression& side : sides) number.sides.emplace_back(side, column_of);
     }
     return number;
+  }
+
+  bool is_output(std::string_view name) const {
+    return std::find(outputs_.begin(), outputs_.end(), name) != outputs_.end();
   }
 
   /// The argument of a function of the run, with names such as "exact(B.x)" in it.
@@ -259,11 +272,13 @@ class MeasureProgram::Reader {
 
   std::string_view text_;
   bool mechanism_;
+  std::span<const std::string> outputs_;
   const ColumnOf& column_of_;
 };
 
-MeasureProgram::MeasureProgram(std::string_view text, bool mechanism, const ColumnOf& column_of) {
-  Reader(text, mechanism, column_of).read(*this);
+MeasureProgram::MeasureProgram(std::string_view text, bool mechanism, std::span<const std::string> outputs,
+                               const ColumnOf& column_of) {
+  Reader(text, mechanism, outputs, column_of).read(*this);
 }
 
 bool MeasureProgram::asks_for_errors() const {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,8 +29,10 @@ class MeasureProgram {
   /// throws ExpressionError where it means none. Of the time it is not asked: that is column 0.
   using ColumnOf = std::function<std::size_t(const std::string& name)>;
 
-  /// `mechanism`: there is an exact motion. Throws ExpressionError with the column in the text.
-  MeasureProgram(std::string_view text, bool mechanism, const ColumnOf& column_of);
+  /// `mechanism`: there is an exact motion. An argument that is the name of one of the `outputs` is that
+  /// output, be it as it may ("x-v"). Throws ExpressionError with the column in the text.
+  MeasureProgram(std::string_view text, bool mechanism, std::span<const std::string> outputs,
+                 const ColumnOf& column_of);
 
   bool asks_for_errors() const;
   bool is_distance() const { return is_distance_; }  ///< nothing but `error()` or `rms_error()`

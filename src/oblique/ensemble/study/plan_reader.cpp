@@ -290,7 +290,7 @@ class PlanReader {
       return;
     }
     try {
-      MeasureProgram program(measure.expression, plan_.mechanism,
+      MeasureProgram program(measure.expression, plan_.mechanism, result_.subject->output_names(),
                              [&](const std::string& column) { return column_of(column); });
       if (program.asks_for_errors() && !result_.asks_for_errors) {
         result_.asks_for_errors = true;

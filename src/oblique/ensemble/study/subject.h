@@ -39,6 +39,8 @@ class Subject {
   virtual solve::RunOptions run_options() const = 0;
   virtual const diagram::Diagram& diagram() const = 0;
   virtual std::string length_unit() const { return {}; }  ///< of a mechanism
+  /// Of a diagram: those of its outputs.
+  virtual std::vector<std::string> output_names() const { return {}; }
   /// The measures of a plan that has none.
   virtual std::vector<Measure> usual_measures() const = 0;
   /// The unit in which the values of a name are. Throws where there is no such name.
