@@ -11,9 +11,13 @@
 
 #include <Eigen/Core>
 
+#include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/flatten.h>
 #include <oblique/mechanism/model/read_mechanism.h>
+#include <oblique/network/assembly/assembly.h>
+#include <oblique/network/program/program.h>
 #include <oblique/patch/patch.h>
+#include <oblique/solve/run.h>
 
 #include "crank.h"
 
@@ -283,6 +287,51 @@ TEST(MonteCarlo, TriesFinerWhereTheSolverFindsNoStep) {
   const MonteCarlo result = drawn(four_bar(), options);
   ASSERT_TRUE(result.errors[0].has_value());
   EXPECT_LT(*result.errors[0], 20 * 0.002 * four_bar().largest_length());
+}
+
+// A ring of 36 Hz for a second, in all 1001 rows: in 73 it stood at zero in each. With conductances that err
+// by a and b its frequency errs by (a + b)/2 of ω, so that the largest error is about ω |a + b|/2 of the
+// largest value. Of a triangular density on ±e the magnitude has the median (1 − √½) e, which n runs tell to
+// e/(2·√2·√n), standing for one deviation.
+TEST(MonteCarlo, OfADiagramLooksAtEveryRow) {
+  const double w = 226.1946710584651, scatter = 1e-5;
+  const diagram::Diagram ring = diagram::parse_diagram(R"toml(
+format = "oblique-diagram/1"
+[run]
+until = 1
+tolerance = 1e-9
+[blocks]
+x = { type = "integrator", in = "-226.1946710584651*y" }
+y = { type = "integrator", in = "226.1946710584651*x", initial = 0.9 }
+[outputs]
+x = "x"
+)toml",
+                                                       "ring.toml");
+  const diagram::FlatDiagram flat = diagram::flatten(ring, diagram::BlockLibrary::shipped());
+  const solve::Trajectory reference =
+      solve::run(network::Program(network::assemble(flat)), flat, solve::options_of(ring.run)).trajectory;
+  MonteCarloOptions options;
+  options.scatters = {{"integrator", "tolerance", scatter, ""}};
+  options.runs = 400;
+  options.threads = 2;
+  const MonteCarlo result = monte_carlo(reference, ring, diagram::BlockLibrary::shipped(), options);
+  EXPECT_EQ(result.drive.size(), 1001U);
+  const double deviation = 1 / (2 * std::numbers::sqrt2 * 20);
+  EXPECT_NEAR(result.percentile(50).value() / (w * scatter), 1 - std::sqrt(0.5), 4 * deviation);
+}
+
+// Each turn of the motion has its rows: ten turns err as one does.
+TEST(MonteCarlo, LooksAtEachTurn) {
+  mechanism::Mechanism once = testing::crank(), often = testing::crank();
+  often.motion.until = 20 * pi;
+  MonteCarloOptions options;
+  options.scatters = {{"summer", "tolerance", 0.01, ""}};
+  options.runs = 3;
+  const MonteCarlo one = drawn(once, options), ten = drawn(often, options);
+  EXPECT_EQ(one.drive.size(), 73U);
+  EXPECT_EQ(ten.drive.size(), 721U);
+  for (std::size_t run = 0; run < 3; ++run)
+    EXPECT_NEAR(*ten.errors[run], *one.errors[run], 1e-5);  // to the solver's tolerance
 }
 
 }  // namespace

@@ -286,5 +286,24 @@ crank = { turns = "AB", about = "A", speed = "1 rad/s", start = ")toml" +
   }
 }
 
+// In each of 120 turns, as in one.
+TEST(Expectations, FindExtremesInEachTurn) {
+  const auto findings = check_expectations(mechanism(R"toml([units]
+length = "m"
+[frame]
+A = [0, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 1 }
+[drives]
+crank = { turns = "AB", about = "A", speed = "1 rad/s", start = "100.03 deg" }
+[motion]
+until = "240*pi"
+[expect]
+"B.x maximum" = { value = 1, within = 1e-11 }
+)toml"));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_TRUE(findings[0].met) << findings[0].actual;
+}
+
 }  // namespace
 }  // namespace oblique::mechanism

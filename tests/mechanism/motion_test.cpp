@@ -151,6 +151,26 @@ TEST(Motion, SpansOneTurnWithBothEnds) {
   }
 }
 
+// What asks for so many rows a turn gets them in each, until they are too many; then no two turns have them
+// in the same places. A drive that moves a slide goes once to and fro.
+TEST(Motion, HasItsRowsInEachTurn) {
+  const auto rows = [](const std::string& until) {
+    Mechanism mechanism = four_bar(1, 4, 3, 4, "1 rad/s", "0 deg", "[4, 3]");
+    mechanism.motion.until = std::stod(until);
+    return rows_over_motion(mechanism, 73);
+  };
+  EXPECT_EQ(rows_over_motion(four_bar(1, 4, 3, 4, "2 rad/s", "0 deg", "[4, 3]"), 73), 73);
+  EXPECT_EQ(rows("3.0"), 73);
+  EXPECT_EQ(rows("6.283185307179586"), 73);
+  EXPECT_EQ(rows("62.83185307179586"), 721);
+  EXPECT_EQ(rows("62.9"), 793);
+  EXPECT_EQ(rows("6283.185307179586"), 3608);
+  EXPECT_EQ(
+      rows_over_motion(
+          read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/slider-crank.toml"), 5000),
+      5000);
+}
+
 // ∫ sin²(t/4) dt = t/2 − sin(t/2): a whole turn in 4π s. A law has no speed at the start by which steps could
 // be measured; backwards it is the mirror image.
 TEST(Motion, StartsFromRest) {

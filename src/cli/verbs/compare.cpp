@@ -247,11 +247,9 @@ ExitStatus compare_diagram(const diagram::BlockLibrary& library, const CompareRe
     told = report::machine_text(patched, *machine) + "\n";
   }
   const diagram::FlatDiagram ideal = diagram::flatten_on_ideal_elements(given, library);
-  const compare::MonteCarloOptions usual;
-  const auto reference = [&](int rows) {
-    solve::RunOptions options = solve::options_of(given.run);
-    options.samples = rows;
-    return solve::run(network::Program(network::assemble(ideal)), ideal, options).trajectory;
+  const auto reference = [&] {
+    return solve::run(network::Program(network::assemble(ideal)), ideal, solve::options_of(given.run))
+        .trajectory;
   };
   std::string text =
       fmt::format("{}{}\n{}", request.mechanism, given.title.empty() ? "" : ": " + given.title, told);
@@ -259,9 +257,8 @@ ExitStatus compare_diagram(const diagram::BlockLibrary& library, const CompareRe
   bool failed = false;
   if (machine != nullptr) {
     Progress progress("figure by figure");
-    const compare::MachineComparison on_machine =
-        compare::compare_on_machine(reference(given.run.samples), drawn, library, *machine,
-                                    [&](double fraction) { progress.show(fraction); });
+    const compare::MachineComparison on_machine = compare::compare_on_machine(
+        reference(), drawn, library, *machine, [&](double fraction) { progress.show(fraction); });
     text += report::to_text(on_machine, command_line());
     json["machine"] = report::to_json(on_machine);
   }
@@ -274,7 +271,7 @@ ExitStatus compare_diagram(const diagram::BlockLibrary& library, const CompareRe
     json["budget"] = report::to_json(report);
   }
   if (request.runs > 0) {
-    const solve::Trajectory exact = reference(usual.positions);
+    const solve::Trajectory exact = reference();
     const report::MonteCarloReport report =
         draw_elements(request, "of the largest value", 0, drawn, library, machine, good_below, until_within,
                       [&](const compare::MonteCarloOptions& drawing) {

@@ -27,10 +27,11 @@ struct Displaced {
 /// where the first drive, or the clock, stands in a row.
 template <class DisplacedOf, class DriveOf>
 ErrorBudget budget_of(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
-                      const BudgetOptions& options, const DisplacedOf& displaced_of, const DriveOf& drive) {
+                      const BudgetOptions& options, int rows, const DisplacedOf& displaced_of,
+                      const DriveOf& drive) {
   const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
   solve::RunOptions how = solve::options_of(diagram.run);
-  how.samples = options.positions;
+  how.samples = rows;
   how.progress = options.progress;
   ErrorBudget budget;
   for (const diagram::FlatBlock& block : flat.blocks) {
@@ -42,7 +43,7 @@ ErrorBudget budget_of(const diagram::Diagram& diagram, const diagram::BlockLibra
       how.sensitivity.push_back(budget.entries.back().element);
     }
   }
-  budget.along.assign(static_cast<std::size_t>(options.positions), 0);
+  budget.along.assign(static_cast<std::size_t>(rows), 0);
   if (budget.entries.empty()) return budget;
   const solve::Trajectory run = solve::run(network::Program(network::assemble(flat)), flat, how).trajectory;
 
@@ -83,14 +84,15 @@ ErrorBudget budget_of(const diagram::Diagram& diagram, const diagram::BlockLibra
 ErrorBudget error_budget(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
                          const diagram::BlockLibrary& library, const BudgetOptions& options) {
   const mechanism::Mechanism mechanism = patch::within_range(whole);
-  const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.positions);
+  const int rows = mechanism::rows_over_motion(mechanism, options.positions);
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, rows);
   const auto points = [&](const diagram::FlatDiagram& flat, const solve::Trajectory&) {
     std::vector<Displaced> found;
     for (const PointOutputs& point : point_outputs(mechanism, flat))
       found.push_back({mechanism.points[point.point].name, {point.x, point.y}, 1});
     return found;
   };
-  return budget_of(diagram, library, options, points, [&](const solve::Trajectory&, std::size_t row) {
+  return budget_of(diagram, library, options, rows, points, [&](const solve::Trajectory&, std::size_t row) {
     return exact.drives.at(row).front().value;
   });
 }
@@ -105,7 +107,7 @@ ErrorBudget error_budget(const diagram::Diagram& diagram, const diagram::BlockLi
     }
     return found;
   };
-  return budget_of(diagram, library, options, outputs,
+  return budget_of(diagram, library, options, diagram.run.samples, outputs,
                    [](const solve::Trajectory& run, std::size_t row) { return run.at(row, 0); });
 }
 

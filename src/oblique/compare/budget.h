@@ -36,7 +36,7 @@ struct ErrorBudget {
 
 struct BudgetOptions {
   std::vector<diagram::BlockFigure> scatters;
-  int positions = 73;  ///< rows over the turn, both ends included
+  int positions = 73;  ///< of a mechanism: rows over one turn, both ends included
   std::function<void(double fraction)> progress;
 };
 
@@ -46,8 +46,8 @@ struct BudgetOptions {
 ErrorBudget error_budget(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
                          const diagram::BlockLibrary& library, const BudgetOptions& options);
 
-/// The same of the outputs of any diagram, each by itself, over the largest value that it has: `error` and
-/// the errors of the entries are parts of that.
+/// The same of the outputs of any diagram, each by itself, over the largest value that it has, in the rows of
+/// its run: `error` and the errors of the entries are parts of that.
 ErrorBudget error_budget(const diagram::Diagram& diagram, const diagram::BlockLibrary& library,
                          const BudgetOptions& options);
 

@@ -174,7 +174,8 @@ Comparison compare_within_range(const mechanism::Mechanism& mechanism, const dia
       structure.groups.begin(), structure.groups.end(),
       [](const mechanism::Group& group) { return group.form.kind == mechanism::GroupKind::general; });
   comparison.turning = mechanism.drives.empty() || !mechanism.drives.front().slide;
-  const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.positions);
+  const int rows = mechanism::rows_over_motion(mechanism, options.positions);
+  const mechanism::Motion exact = mechanism::solve_motion(mechanism, rows);
   for (const auto& drives : exact.drives) comparison.drive.push_back(drives.front().value);
   const WorstReasons reasons(mechanism, exact);
   std::vector<std::optional<double>> bandwidths(options.bandwidths.begin(), options.bandwidths.end());
@@ -195,7 +196,7 @@ Comparison compare_within_range(const mechanism::Mechanism& mechanism, const dia
       patch::PatchOptions asked;
       asked.method = method;
       asked.bandwidth = bandwidth;
-      asked.samples = options.positions;
+      asked.samples = rows;
       asked.gain = *std::max_element(options.gains.begin(), options.gains.end());
       if (method != patch::PatchMethod::gradient) {
         asked.split = options.split;

@@ -181,7 +181,7 @@ MonteCarlo draw_machines(const diagram::Diagram& diagram, const diagram::BlockLi
   constexpr std::size_t kBatch = 100;  // between two looks at the yield
   const diagram::FlatDiagram flat = diagram::flatten(diagram, library);
   solve::RunOptions how = solve::options_of(diagram.run);
-  how.samples = options.positions;
+  how.samples = static_cast<int>(drive.size());
   how.tolerance = tolerance_for(options.scatters);
   const solve::Run undisturbed = solve::run(network::Program(network::assemble(flat)), flat, how);
   how.max_steps = kStepsOfAFailure * std::max(undisturbed.statistics.steps, std::int64_t{1});
@@ -220,7 +220,8 @@ MonteCarlo draw_machines(const diagram::Diagram& diagram, const diagram::BlockLi
 MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
                        const diagram::BlockLibrary& library, const MonteCarloOptions& options) {
   const mechanism::Mechanism mechanism = patch::within_range(whole);
-  const mechanism::Motion exact = mechanism::solve_motion(mechanism, options.positions);
+  const mechanism::Motion exact =
+      mechanism::solve_motion(mechanism, mechanism::rows_over_motion(mechanism, options.positions));
   std::vector<double> drive;
   for (const auto& drives : exact.drives) drive.push_back(drives.front().value);
   return draw_machines(diagram, library, options, std::move(drive), [&](const diagram::FlatDiagram& flat) {

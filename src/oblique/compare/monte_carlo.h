@@ -22,7 +22,7 @@ struct MonteCarloOptions {
   std::uint64_t seed = 1;
   std::uint64_t first_run = 0;       ///< number of the first run: with `runs` = 1 it repeats one
   int threads = 1;                   ///< at most as many as there are runs; the result does not depend on it
-  int positions = 73;                ///< rows over the turn, both ends included
+  int positions = 73;                ///< of a mechanism: rows over one turn, both ends included
   std::optional<double> good_below;  ///< machines of a smaller error are good [length unit]
   /// With `good_below`: the runs end where the part of good machines is known within ± this, at whole
   /// hundreds of them, and at `runs` in any case.
@@ -68,8 +68,8 @@ struct MonteCarlo {
 MonteCarlo monte_carlo(const mechanism::Mechanism& whole, const diagram::Diagram& diagram,
                        const diagram::BlockLibrary& library, const MonteCarloOptions& options);
 
-/// The same of any diagram: the largest distance of any output from that of `reference`, a run of
-/// `options.positions` rows, over the largest value of the output there. `drive` holds the times.
+/// The same of any diagram: the largest distance of any output from that of `reference`, a run, in its rows,
+/// over the largest value of the output there. `drive` holds the times.
 MonteCarlo monte_carlo(const solve::Trajectory& reference, const diagram::Diagram& diagram,
                        const diagram::BlockLibrary& library, const MonteCarloOptions& options);
 

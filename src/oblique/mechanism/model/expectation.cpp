@@ -132,8 +132,10 @@ std::vector<MechanismFinding> check_expectations(const Mechanism& mechanism) {
       std::any_of(mechanism.expectations.begin(), mechanism.expectations.end(),
                   [](const auto& e) { return e.kind == Kind::maximum || e.kind == Kind::minimum; });
   std::vector<MotionColumn> motion;
-  constexpr int kPositions = 3601;
-  if (extremes) motion = motion_columns(mechanism, solve_motion(mechanism, kPositions));
+  constexpr int kPositions = 3601, kMost = 360'007;
+  if (extremes)
+    motion =
+        motion_columns(mechanism, solve_motion(mechanism, rows_over_motion(mechanism, kPositions, kMost)));
   for (const MechanismExpectation& expectation : mechanism.expectations) {
     double actual = 0;
     if (expectation.kind == Kind::at_time || expectation.kind == Kind::at_value) {

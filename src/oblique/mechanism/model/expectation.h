@@ -20,9 +20,9 @@ struct MechanismFinding {
   bool met = false;
 };
 
-/// Solves for what the lines name: times and angles exactly, extremes from 3601 positions over `cycle` and a
-/// parabola through the three around the extreme. Throws MechanismError for a column that there is not, for a
-/// value that the first drive does not reach, and as `solve_motion`.
+/// Solves for what the lines name: times and angles exactly, extremes from 3601 positions over each turn, or
+/// 360 008 in all, and a parabola through the three around the extreme. Throws MechanismError for a column
+/// that there is not, for a value that the first drive does not reach, and as `solve_motion`.
 std::vector<MechanismFinding> check_expectations(const Mechanism& mechanism);
 
 }  // namespace oblique::mechanism

@@ -100,10 +100,30 @@ double cycle(const Mechanism& mechanism, const Structure& structure) {
   return 2 * (range.forward->time - range.backward->time);
 }
 
+namespace {
+
+/// How often a drive turns in `duration`, or how many of the longest links it goes.
+double turns_of(const Mechanism& mechanism, const Drive& drive, double duration) {
+  return std::abs(drive.speed) * duration / (drive.slide ? mechanism.largest_length() : kTurn);
+}
+
+}  // namespace
+
+int rows_over_motion(const Mechanism& mechanism, int over_a_turn, int most) {
+  constexpr double kWhole = 1e-6;  // of a turn
+  double turns = 1;
+  const bool is_known =
+      mechanism.motion.until || (!mechanism.drives.empty() && !mechanism.drives.front().slide);
+  for (const Drive& drive : mechanism.drives) {
+    if (is_known) turns = std::max(turns, std::ceil(turns_of(mechanism, drive, period(mechanism)) - kWhole));
+  }
+  const int least = over_a_turn - 1;
+  return 1 + std::max(least, static_cast<int>(std::min<double>(least * turns, most)));
+}
+
 void check_travel(const Mechanism& mechanism, double duration) {
   for (const Drive& drive : mechanism.drives) {
-    const double turns =
-        std::abs(drive.speed) * duration / (drive.slide ? mechanism.largest_length() : kTurn);
+    const double turns = turns_of(mechanism, drive, duration);
     if (turns <= kMostTurns) continue;
     throw MechanismError(
         MechanismError::Kind::request,

@@ -45,6 +45,11 @@ double period(const Mechanism& mechanism);
 /// both limits and back.
 double cycle(const Mechanism& mechanism, const Structure& structure);
 
+/// So many rows over `cycle`, both ends included, that each turn of the fastest drive in it has
+/// `over_a_turn`; with more than `most` intervals between them only where one turn has. (Of a prime no two
+/// turns are looked at in the same places.) Throws as `period`.
+int rows_over_motion(const Mechanism& mechanism, int over_a_turn, int most = 3607);
+
 /// Throws MechanismError (kind `request`) where a drive turns so often in `duration` [s] that nobody would
 /// wait for a motion that follows it: more than kMostTurns times.
 void check_travel(const Mechanism& mechanism, double duration);
