@@ -456,5 +456,43 @@ x = { type = "integrator", in = "magnitude" }
   EXPECT_THAT(row_values(result, "x"), ::testing::Each(0.0));
 }
 
+// What r compares is x below its level and x/5 above it, as r lets x through or not: at x = 0 it bends, and x
+// slides there all the same, with the mean of r for which x' = −1 − 2 r is zero. (The rates of x and x/5 were
+// mixed, and x left.)
+TEST(Slides, StayWhereWhatIsComparedBendsByWhatFollows) {
+  const auto result = run_of(Compiled(R"toml(one = { type = "constant" }
+r = { type = "comparator", in = ["0.2*x", "through"], low = -1, high = 1 }
+through = { type = "electronic-switch", off = "0.8*x", control = "r" }
+x = { type = "integrator", in = ["-one", "-2*r"], initial = 0.5 }
+i = { type = "integrator", in = "r" }
+)toml"),
+                             {.samples = 61});
+  const auto x = row_values(result, "x"), i = row_values(result, "i"), r = row_values(result, "r");
+  const double arrives = 1.0 / 6;
+  for (std::size_t row = 0; row < x.size(); ++row) {
+    const double t = static_cast<double>(row) / 60;
+    EXPECT_NEAR(x[row], t < arrives ? 0.5 - 3 * t : 0, 1e-9) << t;  // straight lines
+    EXPECT_NEAR(i[row], t < arrives ? t : arrives - (t - arrives) / 2, 1e-9) << t;
+    if (t > arrives + 0.01) EXPECT_NEAR(r[row], -0.5, 1e-9) << t;
+  }
+}
+
+// Where it jumps by what follows it is no surface to slide on: as a comparator with hysteresis it goes to and
+// fro, between x = −0.5 and x = 0.5, at ∓3 and 1.
+TEST(Slides, EndWhereWhatIsComparedJumpsByWhatFollows) {
+  const auto result = run_of(Compiled(R"toml(one = { type = "constant" }
+r = { type = "comparator", in = ["x", "back"], low = -1, high = 1 }
+back = { type = "electronic-switch", on = "0.5*one", off = "-0.5*one", control = "r" }
+x = { type = "integrator", in = ["-one", "-2*r"], initial = 0.5 }
+)toml"),
+                             {.until = 4, .samples = 401});
+  const auto x = row_values(result, "x");
+  for (std::size_t row = 0; row < x.size(); ++row) {
+    const double phase = std::fmod(0.01 * static_cast<double>(row), 4.0 / 3);
+    EXPECT_NEAR(x[row], phase < 1.0 / 3 ? 0.5 - 3 * phase : -0.5 + phase - 1.0 / 3, 1e-9) << row;
+  }
+  EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -49,10 +49,14 @@ void SideTrials::take_back() {
   for (std::size_t u = 0; u < unknowns_.size(); ++u) workspace_.set_unknown(u, unknowns_[u]);
 }
 
-/// Where an event function jumps with the position of another unit, but by nothing here, it is not broken by
-/// that: a level that a product with zero makes, say.
+/// Where an event function jumps with the position of another unit, or with those that follow its own, but by
+/// nothing here, it is not broken by that: a level that a product with zero makes, say.
 void SideTrials::find_broken() {
-  broken_by_ = broken_by(program_, units_);
+  const BrokenSurfaces broken = broken_surfaces(program_, units_);
+  broken_by_ = broken.by_others;
+  for (std::size_t u = 0; u < units_.size(); ++u) {
+    if (broken.by_itself[u] || broken.by_followers[u]) broken_by_[u] |= std::uint64_t{1} << u;
+  }
   double off = 0;
   for (std::size_t u = 0; u < units_.size(); ++u) {
     double nearest = std::numeric_limits<double>::infinity();
@@ -63,7 +67,8 @@ void SideTrials::find_broken() {
   }
   for (std::size_t u = 0; u < units_.size(); ++u) {
     for (std::size_t v = 0; v < units_.size(); ++v) {
-      if (u != v && largest_jump(u, v) <= no_jump(off)) broken_by_[u] &= ~(std::uint64_t{1} << v);
+      if ((u != v || !broken.by_itself[u]) && largest_jump(u, v) <= no_jump(off))
+        broken_by_[u] &= ~(std::uint64_t{1} << v);
     }
   }
 }

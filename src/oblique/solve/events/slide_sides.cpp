@@ -10,18 +10,23 @@ constexpr std::size_t kMostCoupled = 8;
 
 }  // namespace
 
-std::vector<std::uint64_t> broken_by(const network::Program& program,
-                                     const std::vector<std::uint32_t>& units) {
+BrokenSurfaces broken_surfaces(const network::Program& program, const std::vector<std::uint32_t>& units) {
   const network::SwitchStructure& structure = program.switch_structure();
-  std::vector<std::uint64_t> broken(units.size(), 0);
-  for (std::size_t u = 0; u < units.size(); ++u) {
-    for (const std::uint32_t s : structure.members[units[u]]) {
-      for (const std::uint32_t p : structure.positions_below(s)) {
-        const auto other = std::find(units.begin(), units.end(), structure.unit[p]);
-        if (other == units.end()) continue;
-        const auto v = static_cast<std::size_t>(other - units.begin());
-        if (u == v || program.switches()[p].turning == network::Turning::jumps)
-          broken[u] |= std::uint64_t{1} << v;
+  const std::size_t n = units.size();
+  BrokenSurfaces broken{std::vector<std::uint64_t>(n, 0), std::vector<bool>(n), std::vector<bool>(n)};
+  for (std::size_t v = 0; v < n; ++v) {
+    std::vector<bool> turns(structure.unit.size(), false);
+    for (const std::uint32_t s : structure.members[units[v]]) turns[s] = true;
+    const std::vector<bool> follows = structure.followers_of(turns);
+    for (std::size_t u = 0; u < n; ++u) {
+      for (const std::uint32_t s : structure.members[units[u]]) {
+        for (const std::uint32_t p : structure.positions_below(s)) {
+          if (!turns[p] && !follows[p]) continue;
+          if (u != v && program.switches()[p].turning == network::Turning::jumps)
+            broken.by_others[u] |= std::uint64_t{1} << v;
+          if (u == v && turns[p]) broken.by_itself[u] = true;
+          if (u == v && !turns[p]) broken.by_followers[u] = true;
+        }
       }
     }
   }

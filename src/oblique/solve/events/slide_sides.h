@@ -12,11 +12,16 @@
 // What a slide mixes (see SlidingMode). Not installed.
 namespace oblique::solve {
 
-/// Of each of these units, up to 64, the others (as bits) whose positions break its event function: a unit
-/// whose event function jumps or bends with its own position is none to slide on, nor is one that jumps with
-/// that of another, where that makes a difference.
-std::vector<std::uint64_t> broken_by(const network::Program& program,
-                                     const std::vector<std::uint32_t>& units);
+/// What the positions of units do to event functions on which they slide.
+struct BrokenSurfaces {
+  /// Of each of these units, up to 64, the others (as bits) whose positions break its event function, itself
+  /// or by a switch that follows: one that jumps with that of another, where that makes a difference, is none
+  /// to slide on.
+  std::vector<std::uint64_t> by_others;
+  std::vector<bool> by_itself;     ///< it jumps or bends with its own position: none to slide on
+  std::vector<bool> by_followers;  ///< with those that follow it: it must not jump, but may bend
+};
+BrokenSurfaces broken_surfaces(const network::Program& program, const std::vector<std::uint32_t>& units);
 
 /// One combination of sides of the units that slide: bit u of `bits` for unit u.
 struct SlideSide {

@@ -211,14 +211,15 @@ bool SlidingMode::make(std::vector<std::uint32_t> units, const Kept& kept, doubl
   }
   for (const std::uint32_t segment : segments_)
     base_.emplace_back(segment, workspace_.discrete_state(segment));
-  const std::vector<std::uint64_t> broken = broken_by(program_, units_);
+  const BrokenSurfaces broken = broken_surfaces(program_, units_);
+  bends_ = broken.by_followers;
   may_jump_.assign(units_.size(), false);
   slides_on_.assign(units_.size(), false);
   shares_.assign(units_.size(), 0.5);
   bool possible = sides_.are_all() && settle_sides(t, x);
   for (std::size_t u = 0; u < units_.size(); ++u) {
-    may_jump_[u] = broken[u] != 0;
-    possible = possible && (broken[u] >> u & 1U) == 0;
+    may_jump_[u] = broken.by_others[u] != 0 || bends_[u];
+    possible = possible && !broken.by_itself[u];
     const auto before = std::find(kept.units.begin(), kept.units.end(), units_[u]);
     if (before == kept.units.end()) continue;
     slides_on_[u] = true;
@@ -247,6 +248,7 @@ void SlidingMode::end() {
   parts_.clear();
   slides_on_.clear();
   may_jump_.clear();
+  bends_.clear();
   followers_.clear();
   segments_.clear();
   std::fill(follows_.begin(), follows_.end(), false);
@@ -292,10 +294,29 @@ bool SlidingMode::evaluate(SlideSide& side, double t, std::span<const double> x)
   return true;
 }
 
+/// Of event functions that bend at their own switching surface, by what follows (a signal that is let through
+/// or not), the rates on all sides by the gradient of the first: of mixed ones the event function would not
+/// stay.
+bool SlidingMode::take_common_rates(double t, std::span<const double> x) {
+  if (std::find(bends_.begin(), bends_.end(), true) == bends_.end()) return true;
+  load(sides_[0]);
+  std::vector<double> values(follows_.size()), rates(follows_.size());
+  const auto here = program_.event_functions(t, x.data(), values.data(), workspace_);
+  if (!here) return false;
+  for (SlideSide& side : sides_) {
+    here->event_function_rates(side.dxdt.data(), rates.data());
+    for (std::size_t u = 0; u < units_.size(); ++u) {
+      if (!bends_[u]) continue;
+      for (const std::uint32_t s : program_.switch_structure().members[units_[u]]) side.rates[s] = rates[s];
+    }
+  }
+  return true;
+}
+
 bool SlidingMode::evaluate(double t, std::span<const double> x, bool takes_back) {
   bool valid = true;
   for (SlideSide& side : sides_) valid = valid && evaluate(side, t, x);
-  valid = valid && find_shares(takes_back ? kMostReturn : 0);
+  valid = valid && take_common_rates(t, x) && find_shares(takes_back ? kMostReturn : 0);
   load_base();
   for (std::size_t u = 0; valid && u < units_.size(); ++u) {
     double& strongest = strongest_[units_[u]];

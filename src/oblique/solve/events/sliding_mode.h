@@ -142,6 +142,7 @@ class SlidingMode {
   void load(const SlideSide& side);
   void load_base();
   bool evaluate(SlideSide& side, double t, std::span<const double> x);
+  bool take_common_rates(double t, std::span<const double> x);
   bool find_shares(double most_back);
   bool find_only_share(std::size_t unit, double most_back);
   /// Of a unit that nothing couples, the rates of its event function on its two sides.
@@ -166,7 +167,8 @@ class SlidingMode {
   std::vector<std::uint32_t> units_;
   std::vector<std::vector<std::size_t>> parts_;  ///< of `units_`: see IndependentUnits::parts_of
   std::vector<bool> slides_on_;                  ///< of each unit: it has begun to slide
-  std::vector<bool> may_jump_;  ///< of each unit: its event function depends on another that jumps
+  std::vector<bool> may_jump_;  ///< of each unit: its event function depends on another that jumps, or see
+  std::vector<bool> bends_;     ///< it depends on what follows the unit itself
   std::vector<bool> follows_, rests_;
   std::vector<std::uint32_t> followers_;
   std::vector<std::uint32_t> segments_;  ///< the discrete states of tables whose ends are followers
