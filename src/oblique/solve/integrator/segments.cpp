@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <oblique/solve/events/kept_unknowns.h>
 #include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/solve_error.h>
 
@@ -126,7 +127,11 @@ void Segments::take_step(double from, double t, std::span<const double> sample_t
                          const Interpolant& solution) {
   step_.begin = from;
   step_.solution = &parts_.switching.looked_at(t, solution);
-  step_.branch_end = parts_.branches.find(from, t, solution);
+  {
+    // What is read in the step is read forwards: next to the end of a branch two solutions meet.
+    const KeptUnknowns kept(parts_.program, parts_.workspace);
+    step_.branch_end = parts_.branches.find(from, t, solution);
+  }
   step_.times.assign(sample_times.begin(), sample_times.end());
   if (step_.branch_end) {
     t = std::max(from, parts_.branches.before(*step_.branch_end));
