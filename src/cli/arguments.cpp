@@ -165,6 +165,15 @@ std::optional<ExitStatus> parse_arguments(int argc, char** argv, Chosen& chosen)
     if (arguments.empty() || std::find(verbs.begin(), verbs.end(), arguments.front()) != verbs.end())
       arguments.emplace_back("--help");
   }
+  if (const auto empty = std::find(arguments.begin(), arguments.end(), ""); empty != arguments.end()) {
+    const std::string before =
+        empty == arguments.begin() ? "" : fmt::format(" behind '{}'", *std::prev(empty));
+    print_error(message({{},
+                         fmt::format("the argument{} is empty", before),
+                         "a name or a value",
+                         "leave it out; a variable of the shell that is not set makes one"}));
+    return ExitStatus::bad_request;
+  }
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& success) {  // --help, --version

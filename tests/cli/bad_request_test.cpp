@@ -55,6 +55,10 @@ INSTANTIATE_TEST_SUITE_P(
                        "there is no command 'rnu'\n  remedy: did you mean 'run'?"},
         BadRequestCase{"VerbBehindDashes", "oblique -- run x", 2,
                        "'--' stands before the command 'run'\n  remedy: leave '--' out there"},
+        BadRequestCase{
+            "EmptyArgument", "oblique run diagrams/lessons/circle.toml -o ''", 2,
+            "the argument behind '-o' is empty; expected a name or a value\n  remedy: leave it out; a "
+            "variable of the shell that is not set makes one"},
         BadRequestCase{"ArgumentTooMany", "oblique run x extra --blocks .", 2,
                        "extra\n  remedy: oblique run --help"},
         BadRequestCase{"FullStdout", "oblique blocks >/dev/full", 2,

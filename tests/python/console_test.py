@@ -110,7 +110,8 @@ def test_refuses(decay):
         with pytest.raises(ob.ConsoleError):
             work()
     for work in (lambda: machine.advance(math.nan), lambda: machine.advance(math.inf), lambda: machine.read(3),
-                 lambda: machine.turn("x.rate", math.nan), lambda: machine.restore("x"), lambda: machine.scope([3], 2)):
+                 lambda: machine.turn("x.rate", math.nan), lambda: machine.restore("x"), lambda: machine.scope([3], 2),
+                 lambda: machine.scope([], 2)):
         with pytest.raises(ob.RequestError):
             work()
     with pytest.raises(ob.DiagramError):

@@ -185,3 +185,8 @@ def test_what_makes_no_sense_is_refused(folder):
     refused(ob.ReadError, lambda: plan.status(folder / "nowhere"))
     with pytest.warns(ob.RunWarning, match="written by version 0.0.7"):
         ob.Plan(text='version = "0.0.7"\n' + PLAN, file=str(folder / "p.toml"))
+
+
+def test_refuses_a_progress_that_is_no_function(folder):
+    with pytest.raises(ob.RequestError, match="progress=3 cannot be called"):
+        ob.sweep(folder / "decay.toml", vary={"x.initial": "1..2:3"}, measure={"last": "end(x)"}, progress=3)

@@ -214,3 +214,10 @@ def test_the_yield_is_that_of_the_program(program):
                   {"good_below": "1%", "monte_carlo": 0}):
         with pytest.raises(ob.Error):
             four_bar.compare(1e6, **{"monte_carlo": 20, "tolerance": "0.5%", **wrong})
+
+
+def test_refuses_more_rows_than_fit():
+    four_bar = ob.Mechanism("diagrams/mechanisms/four-bar.toml")
+    for work in (lambda: four_bar.solve(10**9), lambda: four_bar.compare(positions=10**9)):
+        with pytest.raises(ob.RequestError, match="from 2 to 10000000"):
+            work()

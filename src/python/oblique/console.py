@@ -172,6 +172,8 @@ class Console:
         """Runs until that time [s] and records outputs, signals or pots at equal distances of time, both ends
         included: a table with `t` [s] first."""
         probes = _arguments.names("names", names)
+        if not probes:
+            raise RequestError("names=[] names nothing to record", "an output, a signal or a pot")
         time = _arguments.quantity("until", until, "s")
         rows = _arguments.count("samples", samples, 2)
         held = self._held()

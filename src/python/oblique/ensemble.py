@@ -264,6 +264,8 @@ class Plan:
     def run(self, progress: Optional[Callable[[int, int], object]] = None) -> EnsembleRun:
         """Runs all machines here, and gives their rows. `progress(done, machines)` is called five times a second. Ctrl-C
         throws Interrupted, which has the rows that were done; what `progress` throws ends the runs too."""
+        if progress is not None and not callable(progress):
+            raise RequestError(f"progress={shown(progress)} cannot be called", "a function of two numbers")
         rows, failures, count, numbers, stop = self._raw.run(progress)
         run = EnsembleRun(self._raw.columns, self._raw.n_varied, rows, failures, count, numbers)
         if stop is None:

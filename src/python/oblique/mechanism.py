@@ -294,7 +294,7 @@ class Mechanism:
         transmission angles and others. Throws MechanismError.
         """
         limit = "" if at_limit is None else _arguments.choice("at_limit", at_limit, ("open", "stop", "reverse"))
-        motion = Motion(self._model.solve(_arguments.count("positions", positions, 2),
+        motion = Motion(self._model.solve(_arguments.count("positions", positions, 2, 10_000_000),
                                           _arguments.optional_positive("until", until, "s"), limit, bool(analysis)))
         if (motion.status == "open").any():
             warn(motion.remarks.strip())
@@ -383,7 +383,7 @@ class Mechanism:
             "gains": None if gains is None else _arguments.numbers("gains", gains, "1"),
             "bandwidths": None if bandwidths is None else _arguments.numbers("bandwidths", bandwidths, "Hz"),
             "methods": wanted,
-            "positions": _arguments.count("positions", positions, 2),
+            "positions": _arguments.count("positions", positions, 2, 10_000_000),
             "threads": _arguments.count("threads", threads, 0, 4096)}
         chosen = self._patching(None, None, "gradient" if wanted == ["gradient"] else "triangles", split, slower)
         options.update(split=chosen["split"], slower=chosen["slower"])
