@@ -447,6 +447,29 @@ lag = { type = "transfer-lag", in = "p", time_constant = 3e-10, gain = 2, limit 
   for (std::size_t r = 0; r < lag.size(); ++r) EXPECT_NEAR(lag[r], p[r] < 0 ? -0.8 : 0, 1e-8) << r;
 }
 
+// An integrator that a comparator of its own output puts into its initial condition goes back at once, and
+// does not stay where in that mode nothing moves it: a saw tooth of 0.3, by a mode line as by `set`,
+// whichever side of the level the comparator sees.
+TEST(Events, WhatPutsItsOwnSignalBackTurnsOver) {
+  for (const char* const comparator : {R"(c = { type = "comparator", in = ["x", "-0.3*one"] })",
+                                       R"(less = { type = "comparator", in = ["0.3*one", "-x"], high = -1 }
+c = { type = "summer", in = ["one", "less"] })"}) {
+    const auto result = run_of(Compiled(std::string(R"toml(one = { type = "constant" }
+x = { type = "integrator", in = "one" }
+y = { type = "integrator", in = "x" }
+)toml") + comparator + "\n",
+                                        "[groups]\ng = { blocks = [\"x\"], initial = \"c\" }\n"),
+                               {.until = 2, .samples = 201});
+    EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+    const auto x = row_values(result, "x");
+    for (std::size_t r = 0; r < x.size(); ++r) {
+      if (r % 30 == 0) continue;  // at the jumps
+      EXPECT_NEAR(x[r], 0.01 * static_cast<double>(r % 30), 1e-9) << r;
+    }
+    EXPECT_NEAR(row_values(result, "y").back(), 6 * 0.045 + 0.02, 1e-9);  // six teeth and two thirds
+  }
+}
+
 // --- tables
 // --------------------------------------------------------------------------------------------------------
 

@@ -181,11 +181,11 @@ void EventSearch::sample(double t, const Interpolant& solution, Sample& at) {
     at.rates[n + k] = (beside->second[k] - of_slide[k]) / (beside->first - t);
 }
 
-/// Finds which switches need not be looked at: what nothing reads, because another one masks it that is looked
-/// at. It is put where it belongs when that one turns over, or anything else is settled; by itself it would
-/// turn at every rounding (as what drives a limited lag does, that is at rest within its limits). Of two that
-/// mask each other the last is looked at: in `out > limit and drive > 0` the limit. (Not what events read:
-/// while it lags behind, one would be due that is not.)
+/// Finds which switches need not be looked at: what nothing reads, because another one masks it that is
+/// looked at. It is put where it belongs when that one turns over, or anything else is settled; by itself it
+/// would turn at every rounding (as what drives a limited lag does, that is at rest within its limits). Of
+/// two that mask each other the last is looked at: in `out > limit and drive > 0` the limit. (Not what events
+/// read: while it lags behind, one would be due that is not.)
 void EventSearch::find_masked() {
   const network::SwitchStructure& structure = program_.switch_structure();
   std::vector<bool> asleep(workspace_.discrete_states().size(), true);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <vector>
 
+#include <oblique/solve/events/self_consistent.h>
+#include <oblique/solve/events/sliding_mode.h>
+
 namespace oblique::solve {
 namespace {
 
@@ -78,6 +81,58 @@ std::optional<std::uint32_t> idle_on_side(const network::Program& program, netwo
   }
   workspace.load_discrete_states(positions);
   return found;
+}
+
+std::vector<std::vector<std::size_t>> find_setters(const network::Program& program) {
+  const network::SwitchStructure& structure = program.switch_structure();
+  std::vector<std::vector<std::size_t>> setters(structure.members.size());
+  const auto sets_states = [](const network::Event& event) {
+    return !event.repeats && std::any_of(event.actions.begin(), event.actions.end(),
+                                         [](const auto& action) { return action.on_state; });
+  };
+  for (std::size_t unit = 0; unit < setters.size(); ++unit) {
+    std::vector<bool> turns(structure.unit.size(), false);
+    for (const std::uint32_t s : structure.members[unit]) turns[s] = true;
+    const std::vector<bool> follows = structure.followers_of(turns);
+    for (std::size_t e = 0; e < program.events().size(); ++e) {
+      if (!sets_states(program.events()[e])) continue;
+      const std::vector<std::uint32_t> read = structure.positions_in(program.events()[e].condition);
+      if (std::any_of(read.begin(), read.end(), [&](std::uint32_t s) { return turns[s] || follows[s]; }))
+        setters[unit].push_back(e);
+    }
+  }
+  return setters;
+}
+
+bool sets_off_a_jump(const network::Program& program, const network::Workspace& workspace,
+                     const Thresholds& thresholds, const std::vector<std::size_t>& setters,
+                     const Announced& announced, std::uint32_t s, double t, std::span<const double> x) {
+  if (setters.empty()) return false;
+  network::Workspace trial = workspace;
+  std::vector<double> signals(program.n_signals()), values(program.switches().size());
+  const auto now = program.signals(t, x.data(), signals.data(), trial);
+  if (!now) return false;
+  std::vector<bool> held, placed(values.size(), false);
+  for (const std::size_t e : setters) held.push_back(now->condition(e));
+  const network::SwitchStructure& structure = program.switch_structure();
+  for (const std::uint32_t m : structure.members[structure.unit[s]]) {
+    placed[m] = true;
+    if (announced[m]) trial.set_discrete_state(program.switches()[m].discrete_state, *announced[m]);
+  }
+  if (!place_others(program, trial, thresholds, placed, t, x, values)) return false;
+  const auto then = program.signals(t, x.data(), signals.data(), trial);
+  if (!then) return false;
+  std::vector<double> jumped(x.begin(), x.end());
+  for (std::size_t k = 0; k < setters.size(); ++k) {
+    const std::size_t e = setters[k];
+    if (held[k] || !then->condition(e)) continue;
+    const auto& actions = program.events()[e].actions;
+    for (std::size_t a = 0; a < actions.size(); ++a) {
+      if (actions[a].on_state) jumped[actions[a].index] = then->action_value(e, a);
+    }
+  }
+  return program.event_functions(t, jumped.data(), values.data(), trial) &&
+         std::abs(values[s]) > std::max(SlidingMode::drift(), thresholds[s]);
 }
 
 }  // namespace oblique::solve

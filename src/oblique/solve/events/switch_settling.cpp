@@ -45,6 +45,7 @@ SwitchSettling::SwitchSettling(const network::Program& program, network::Workspa
       span_(span),
       positions_(program, workspace, slide, event_functions.thresholds(), span),
       chained_(known_follow_from_others()),
+      setters_(find_setters(program)),
       stays_(program.switches().size(), false),
       decided_(program.switch_structure().members.size(), false),
       rested_(program.switches().size(), false),
@@ -171,7 +172,8 @@ double SwitchSettling::known_position(std::size_t s, double event_function, doub
 
 /// Turns every switch over whose event function asks for it, and collects the units that lie on their
 /// switching surfaces and have not been decided yet. True where any turned over.
-bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned) {
+bool SwitchSettling::turn_by_event_functions(double t, std::span<const double> x, Units& at_zero,
+                                             std::vector<std::uint32_t>& turned) {
   const network::SwitchStructure& structure = program_.switch_structure();
   at_zero.clear();
   turned.clear();
@@ -187,8 +189,22 @@ bool SwitchSettling::turn_by_event_functions(double t, Units& at_zero, std::vect
       continue;
     } else if (is_near(s)) {
       const std::uint32_t unit = structure.unit[s];
-      if (!listed[unit]) at_zero.push_back(unit);
+      if (listed[unit]) continue;
       listed[unit] = true;
+      const bool may_jump =
+          announced_[s] && *announced_[s] != before && !has_unit(slid_, unit) && !slide_.active();
+      if (!may_jump || !sets_off_a_jump(program_, workspace_, event_functions_.thresholds(), setters_[unit],
+                                        announced_, s, t, x)) {
+        at_zero.push_back(unit);
+        continue;
+      }
+      decided_[unit] = true;
+      for (const std::uint32_t member : structure.members[unit]) {
+        if (!announced_[member] || position(member) == *announced_[member]) continue;
+        turn(member, *announced_[member], t);
+        turned.push_back(member);
+      }
+      continue;
     } else if (event_functions_.is_off_zero(s)) {
       asked = event_functions_[s] > 0 ? 1 : 0;
     }
@@ -386,7 +402,7 @@ bool SwitchSettling::settle(double t, std::span<const double> x) {
       turn_in_order(t, x);
       event_functions_.evaluate(t, x, announced_);
     }
-    if (turn_by_event_functions(t, at_zero, turned)) {
+    if (turn_by_event_functions(t, x, at_zero, turned)) {
       if (round <= most) continue;
       // These go on turning over: their event functions depend on their own positions.
       restless.insert(restless.end(), turned.begin(), turned.end());

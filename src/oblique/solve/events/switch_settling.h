@@ -80,7 +80,8 @@ class SwitchSettling {
   void turn(std::size_t s, double position, double t);
   void watch_pace(std::size_t s, double t);
   double known_position(std::size_t s, double event_function, double rate, double t) const;
-  bool turn_by_event_functions(double t, Units& at_zero, std::vector<std::uint32_t>& turned);
+  bool turn_by_event_functions(double t, std::span<const double> x, Units& at_zero,
+                               std::vector<std::uint32_t>& turned);
   void turn_in_order(double t, std::span<const double> x);
   void add_preferred(std::uint32_t unit, double t, std::vector<double>& preferred) const;
   bool is_at_level(std::uint32_t unit) const;
@@ -105,6 +106,7 @@ class SwitchSettling {
   double span_;
   Positions positions_;
   bool chained_;  ///< whether a known switch depends on the position of another
+  std::vector<std::vector<std::size_t>> setters_;  ///< of each unit, see `find_setters`
 
   std::vector<bool> stays_;    ///< see `stays`
   std::vector<bool> decided_;  ///< of each unit: by where it drifts, once since `begin`
