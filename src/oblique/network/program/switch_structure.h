@@ -64,7 +64,7 @@ struct SwitchStructure {
   std::size_t n_discrete_states = 0;
   std::vector<NodeId> event_functions;   ///< of each switch
   std::vector<std::vector<Mask>> masks;  ///< of each switch what masks its position
-  std::vector<bool> read_by_events;      ///< of each switch: by what they are due at, or set; or by a phase
+  std::vector<bool> read_by_events;      ///< of each switch: or by the ends of phases
 };
 
 SwitchStructure find_switch_structure(const Network& network);

@@ -86,19 +86,21 @@ std::optional<std::uint32_t> idle_on_side(const network::Program& program, netwo
 std::vector<std::vector<std::size_t>> find_setters(const network::Program& program) {
   const network::SwitchStructure& structure = program.switch_structure();
   std::vector<std::vector<std::size_t>> setters(structure.members.size());
-  const auto sets_states = [](const network::Event& event) {
-    return !event.repeats && std::any_of(event.actions.begin(), event.actions.end(),
+  for (std::size_t e = 0; e < program.events().size(); ++e) {
+    const network::Event& event = program.events()[e];
+    const bool sets_states = std::any_of(event.actions.begin(), event.actions.end(),
                                          [](const auto& action) { return action.on_state; });
-  };
-  for (std::size_t unit = 0; unit < setters.size(); ++unit) {
-    std::vector<bool> turns(structure.unit.size(), false);
-    for (const std::uint32_t s : structure.members[unit]) turns[s] = true;
-    const std::vector<bool> follows = structure.followers_of(turns);
-    for (std::size_t e = 0; e < program.events().size(); ++e) {
-      if (!sets_states(program.events()[e])) continue;
-      const std::vector<std::uint32_t> read = structure.positions_in(program.events()[e].condition);
-      if (std::any_of(read.begin(), read.end(), [&](std::uint32_t s) { return turns[s] || follows[s]; }))
-        setters[unit].push_back(e);
+    if (!sets_states || event.repeats) continue;
+    std::vector<std::uint32_t> pending = structure.positions_in(event.condition);
+    std::vector<bool> leads(structure.unit.size(), false);
+    while (!pending.empty()) {
+      const std::uint32_t s = pending.back();
+      pending.pop_back();
+      if (leads[s]) continue;
+      leads[s] = true;
+      std::vector<std::size_t>& of_unit = setters[structure.unit[s]];
+      if (of_unit.empty() || of_unit.back() != e) of_unit.push_back(e);
+      for (const std::uint32_t below : structure.positions_below(s)) pending.push_back(below);
     }
   }
   return setters;

@@ -52,7 +52,7 @@ void SideTrials::take_back() {
 /// Where an event function jumps with the position of another unit, or with those that follow its own, but by
 /// nothing here, it is not broken by that: a level that a product with zero makes, say.
 void SideTrials::find_broken() {
-  const BrokenSurfaces broken = broken_surfaces(program_, units_);
+  const Breaks broken = find_breaks(program_, units_);
   broken_by_ = broken.by_others;
   for (std::size_t u = 0; u < units_.size(); ++u) {
     if (broken.by_itself[u] || broken.by_followers[u]) broken_by_[u] |= std::uint64_t{1} << u;

@@ -10,10 +10,10 @@ constexpr std::size_t kMostCoupled = 8;
 
 }  // namespace
 
-BrokenSurfaces broken_surfaces(const network::Program& program, const std::vector<std::uint32_t>& units) {
+Breaks find_breaks(const network::Program& program, const std::vector<std::uint32_t>& units) {
   const network::SwitchStructure& structure = program.switch_structure();
   const std::size_t n = units.size();
-  BrokenSurfaces broken{std::vector<std::uint64_t>(n, 0), std::vector<bool>(n), std::vector<bool>(n)};
+  Breaks broken{std::vector<std::uint64_t>(n, 0), std::vector<bool>(n), std::vector<bool>(n)};
   for (std::size_t v = 0; v < n; ++v) {
     std::vector<bool> turns(structure.unit.size(), false);
     for (const std::uint32_t s : structure.members[units[v]]) turns[s] = true;

@@ -12,8 +12,8 @@
 // What a slide mixes (see SlidingMode). Not installed.
 namespace oblique::solve {
 
-/// What the positions of units do to event functions on which they slide.
-struct BrokenSurfaces {
+/// What breaks the event functions of units, so that they may be none to slide on.
+struct Breaks {
   /// Of each of these units, up to 64, the others (as bits) whose positions break its event function, itself
   /// or by a switch that follows: one that jumps with that of another, where that makes a difference, is none
   /// to slide on.
@@ -21,7 +21,7 @@ struct BrokenSurfaces {
   std::vector<bool> by_itself;     ///< it jumps or bends with its own position: none to slide on
   std::vector<bool> by_followers;  ///< with those that follow it: it must not jump, but may bend
 };
-BrokenSurfaces broken_surfaces(const network::Program& program, const std::vector<std::uint32_t>& units);
+Breaks find_breaks(const network::Program& program, const std::vector<std::uint32_t>& units);
 
 /// One combination of sides of the units that slide: bit u of `bits` for unit u.
 struct SlideSide {

@@ -211,7 +211,7 @@ bool SlidingMode::make(std::vector<std::uint32_t> units, const Kept& kept, doubl
   }
   for (const std::uint32_t segment : segments_)
     base_.emplace_back(segment, workspace_.discrete_state(segment));
-  const BrokenSurfaces broken = broken_surfaces(program_, units_);
+  const Breaks broken = find_breaks(program_, units_);
   bends_ = broken.by_followers;
   may_jump_.assign(units_.size(), false);
   slides_on_.assign(units_.size(), false);
