@@ -80,6 +80,27 @@ z = { type = "logarithmic-amplifier", in = ["-1.7*z", "u"], saturation = 0.1875,
   }
 }
 
+// The same where a limit is left a moment before, within a step: what is left of it is looked at anew. Where
+// the limiter follows, z = −T asinh((0.48 u − 1.55 z)/(2 s)) ends as above, with (1.55 T)² for (g T)².
+TEST(Branch, EndsInTimeBehindWhatTurnsOverInTheSameStep) {
+  const double slope = 1.55 * 0.55, in = -std::sqrt(slope * slope - 0.25);
+  const double z = -0.55 * std::asinh(in / 0.5), u = (in + 1.55 * z) / 0.48;
+  const double fold = std::asin((u + 0.26) / 1.33) / 0.86;
+  for (const int samples : {61, 301, 1201}) {
+    const auto result =
+        run_of(Compiled(R"toml(u = { type = "time-function", formula = "1.33*sin(0.86*time) - 0.26" }
+z = { type = "logarithmic-amplifier", in = ["-1.55*limited", "0.48*u"], saturation = 0.25, thermal = 0.55, pair = 1 }
+limited = { type = "limiter", in = "z", low = -0.38, high = 0.68 }
+)toml"),
+               {.until = 6, .samples = samples});
+    const auto jump = std::find_if(result.events.begin(), result.events.end(), [](const EventRecord& event) {
+      return event.what.starts_with("jumps where its branch ends: z from 0.6197");
+    });
+    ASSERT_NE(jump, result.events.end()) << samples;
+    EXPECT_NEAR(jump->time, fold, 2e-9) << samples;  // found to 1e-10 of the run
+  }
+}
+
 // Just before its end there are two solutions close together: the one is read on which the loop is, however
 // far the rows lie apart. (At t = 0.85, before the end at 0.858, it was the other one.)
 TEST(Branch, IsReadUpToItsEnd) {

@@ -127,18 +127,20 @@ void Segments::take_step(double from, double t, std::span<const double> sample_t
                          const Interpolant& solution) {
   step_.begin = from;
   step_.solution = &parts_.switching.looked_at(t, solution);
-  {
-    // What is read in the step is read forwards: next to the end of a branch two solutions meet.
-    const KeptUnknowns kept(parts_.program, parts_.workspace);
-    step_.branch_end = parts_.branches.find(from, t, solution);
-  }
   step_.times.assign(sample_times.begin(), sample_times.end());
-  if (step_.branch_end) {
-    t = std::max(from, parts_.branches.before(*step_.branch_end));
-    std::erase_if(step_.times, [&](double sample_time) { return !(sample_time < t); });
-    step_.times.push_back(t);
-  }
   step_.end = t;
+  find_branch_end();
+}
+
+/// Ends what is left of the step where the branch of a loop ends that no derivative needs. What is read in it
+/// is read forwards: next to such an end two solutions meet.
+void Segments::find_branch_end() {
+  const KeptUnknowns kept(parts_.program, parts_.workspace);
+  step_.branch_end = parts_.branches.find(step_.begin, step_.end, *step_.solution);
+  if (!step_.branch_end) return;
+  step_.end = std::max(step_.begin, parts_.branches.before(*step_.branch_end));
+  std::erase_if(step_.times, [&](double sample_time) { return !(sample_time < step_.end); });
+  step_.times.push_back(step_.end);
 }
 
 /// The first of these times, or between them, at which a switch turns over. A loop may have no solution
@@ -195,6 +197,7 @@ Segments::Passed Segments::pass(double& t) {
     parts_.switching.let_pass(without_effect);
     if (without_effect) {
       step_.begin = *step_.event;
+      find_branch_end();
       return Passed::piece;
     }
   }

@@ -79,6 +79,7 @@ class Segments {
                       const Interpolant& solution);
   bool turns_without_effect(double at, std::span<const double> sample_times, const Interpolant& solution);
   std::optional<double> search(const std::vector<double>& times);
+  void find_branch_end();
   std::optional<double> find_event();
   bool stands(double t);
   bool follows_sensitivities() const { return !parts_.options.sensitivity.empty(); }
