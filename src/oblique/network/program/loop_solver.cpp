@@ -159,17 +159,24 @@ LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<cons
     solved_ = known;
     return LoopFailure::none;
   }
-  if (!known) return search.failure;
+  if (!known) {
+    if (solved_) branch_ = matrix_.determinant_sign();
+    return search.failure;
+  }
   if (solved_ && search.even_order) return LoopFailure::none;
   if (!solved_ && (!following_ || search.failure != LoopFailure::diverged)) return search.failure;
   const bool is_near = longest_change(loop, slots) < kLongWay;
   if (solved_ && matrix_.determinant_sign() == search.first_sign &&
-      (is_near || keeps_sign(loop, body, slots, origin_, search.first_sign)))
+      (is_near || keeps_sign(loop, body, slots, origin_, search.first_sign))) {
+    if (following_ && matrix_.determinant_sign() != branch_) return solve_beside_fold(loop, body, slots);
+    branch_ = matrix_.determinant_sign();
     return LoopFailure::none;
+  }
   read(loop, slots, target_);
   write(loop, slots, origin_);
   const Search shorter = newton(loop, body, slots, Steps::parts);
   if (shorter.failure == LoopFailure::none && matrix_.determinant_sign() == shorter.first_sign) {
+    branch_ = shorter.first_sign;
     solved_ = true;
     return LoopFailure::none;
   }
@@ -179,6 +186,26 @@ LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<cons
   }
   write(loop, slots, target_);
   evaluate(body, slots);
+  branch_ = 0;
+  return LoopFailure::none;
+}
+
+/// From next to a fold the sign where the search began may be that of the other branch, on which the slots
+/// hold a solution then. The one that is followed lies as far on the other side; where there is none, the
+/// sign has changed on the branch itself.
+LoopFailure LoopWorkspace::solve_beside_fold(const LoopCode& loop, std::span<const Instruction> body,
+                                             double* slots) {
+  read(loop, slots, target_);
+  const int sign = matrix_.determinant_sign();
+  const double apart = longest_change(loop, slots);
+  write(loop, slots, 2 * origin_ - target_);
+  const Search search = newton(loop, body, slots, Steps::guarded);
+  if (branch_ != 0 && search.failure == LoopFailure::none && matrix_.determinant_sign() == branch_ &&
+      longest_change(loop, slots) < 3 * apart + kLongWay)
+    return LoopFailure::none;
+  write(loop, slots, target_);
+  evaluate(body, slots);
+  branch_ = sign;
   return LoopFailure::none;
 }
 

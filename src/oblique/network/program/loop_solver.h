@@ -68,6 +68,7 @@ class LoopWorkspace {
   Search newton(const LoopCode& loop, std::span<const Instruction> body, double* slots,
                 Steps steps = Steps::any);
   LoopFailure solve_unbranched(const LoopCode& loop, std::span<const Instruction> body, double* slots);
+  LoopFailure solve_beside_fold(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   LoopFailure solve_linear(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   LoopFailure solve_branched(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   bool solves(const LoopCode& loop, std::span<const Instruction> body, double* slots,

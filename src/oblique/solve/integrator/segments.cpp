@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <oblique/solve/events/kept_unknowns.h>
 #include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/solve_error.h>
 
@@ -132,10 +131,8 @@ void Segments::take_step(double from, double t, std::span<const double> sample_t
   find_branch_end();
 }
 
-/// Ends what is left of the step where the branch of a loop ends that no derivative needs. What is read in it
-/// is read forwards: next to such an end two solutions meet.
+/// Ends what is left of the step where the branch of a loop ends that no derivative needs.
 void Segments::find_branch_end() {
-  const KeptUnknowns kept(parts_.program, parts_.workspace);
   step_.branch_end = parts_.branches.find(step_.begin, step_.end, *step_.solution);
   if (!step_.branch_end) return;
   step_.end = std::max(step_.begin, parts_.branches.before(*step_.branch_end));
