@@ -80,6 +80,25 @@ z = { type = "logarithmic-amplifier", in = ["-1.7*z", "u"], saturation = 0.1875,
   }
 }
 
+// z = (3.81 z − 0.80 u)² by the quadratic formula, from 0 on to where its two solutions meet at t
+// = 2.0355: however far the rows lie apart it is the smaller one. (A step was read from its end, where the
+// way back to its beginning led to the greater.)
+TEST(Branch, IsTheSameHoweverFarTheRowsLieApart) {
+  for (const int samples : {5, 13, 25, 61}) {
+    const auto result = run_of(Compiled(R"toml(z = { type = "squarer", in = "-s" }
+u = { type = "time-function", formula = "1.03*sin(1.64*time) + 0.15*sin(4.18*time)" }
+s = { type = "diode-amplifier", in = ["-2.82*z", "0.59*u"], low = -0.69, high = 0.84, feedback = 0.74 }
+)toml"),
+                               {.until = 1.5, .samples = samples});
+    const auto z = row_values(result, "z"), u = row_values(result, "u");
+    for (std::size_t r = 0; r < z.size(); ++r) {
+      const double k = 2.82 / 0.74, c = 0.59 / 0.74 * u[r];  // k² z² − (2 k c + 1) z + c² = 0
+      const double b = 2 * k * c + 1;
+      EXPECT_NEAR(z[r], 2 * c * c / (b + std::sqrt(b * b - 4 * k * k * c * c)), 1e-12) << samples << " " << r;
+    }
+  }
+}
+
 // The same where a limit is left a moment before, within a step: what is left of it is looked at anew. Where
 // the limiter follows, z = −T asinh((0.48 u − 1.55 z)/(2 s)) ends as above, with (1.55 T)² for (g T)².
 TEST(Branch, EndsInTimeBehindWhatTurnsOverInTheSameStep) {

@@ -191,10 +191,12 @@ LoopFailure LoopWorkspace::solve_unbranched(const LoopCode& loop, std::span<cons
 }
 
 /// From next to a fold the sign where the search began may be that of the other branch, on which the slots
-/// hold a solution then. The one that is followed lies as far on the other side; where there is none, the
-/// sign has changed on the branch itself.
+/// hold a solution then. The one that is followed lies as far on the other side. Where there is none the sign
+/// has changed on the branch itself, on which an unknown has hardly moved; else the solution is to be sought
+/// in shorter steps of the time.
 LoopFailure LoopWorkspace::solve_beside_fold(const LoopCode& loop, std::span<const Instruction> body,
                                              double* slots) {
+  constexpr double kHardly = 1e-3;  // [machine unit]
   read(loop, slots, target_);
   const int sign = matrix_.determinant_sign();
   const double apart = longest_change(loop, slots);
@@ -203,6 +205,7 @@ LoopFailure LoopWorkspace::solve_beside_fold(const LoopCode& loop, std::span<con
   if (branch_ != 0 && search.failure == LoopFailure::none && matrix_.determinant_sign() == branch_ &&
       longest_change(loop, slots) < 3 * apart + kLongWay)
     return LoopFailure::none;
+  if (branch_ != 0 && apart > kHardly) return LoopFailure::lost;
   write(loop, slots, target_);
   evaluate(body, slots);
   branch_ = sign;
