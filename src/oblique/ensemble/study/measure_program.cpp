@@ -142,6 +142,7 @@ class MeasureProgram::Reader {
       if (is_operator || text::find_function(call.name) != nullptr || call.name == "exact")
         return std::nullopt;
       std::vector<std::string> names;
+      names.reserve(kFunctions.size());
       for (const auto& known : kFunctions) names.emplace_back(known.first);
       const auto near = text::nearest_name(call.name, names);
       fail(call.begin, fmt::format("there is no function '{}'", call.name), {},
