@@ -380,5 +380,50 @@ x = { type = "integrator", in = ["u", "-2*x"], initial = 0.3 }
   }
 }
 
+// dx/dt = 1 − 2c slides at x = 0 with c = 1/2 in the mean, until y, a lag of 0.5 s of c, comes to 0.4 at
+// 0.5 ln 5 s. There e moves the level of c to 0.06, so that c is 0 and y falls: e slides at y = 0.4, with c =
+// 0.4 in the mean, which lets x rise by 0.2 a second, to 0.06 in 0.3 s. From there on c slides at that level.
+// Mirrored, for c holds above zero alone, and at it does not.
+TEST(Slide, IsLeftWhereASwitchThatItMovesMovesItsLevelAway) {
+  const char* const text = R"toml(
+c = { type = "comparator", in = ["x", "-e"] }
+e = { type = "electronic-switch", on = "a", off = "o", control = "y", threshold = 0.4 }
+y = { type = "transfer-lag", in = "c", time_constant = 0.5 }
+x = { type = "integrator", in = ["-2*c", "one"] }
+o = { type = "constant", value = 0 }
+a = { type = "constant", value = 0.06 }
+one = { type = "constant", value = 1 }
+)toml";
+  const char* const mirrored = R"toml(
+e = { type = "electronic-switch", on = "o", off = "a", control = "z", threshold = 0.6 }
+z = { type = "transfer-lag", in = "c", time_constant = 0.5, initial = 1 }
+y = { type = "summer", in = ["one", "-z"] }
+c = { type = "comparator", in = ["e", "-x"] }
+x = { type = "integrator", in = ["2*c", "-one"] }
+o = { type = "constant", value = 0 }
+a = { type = "constant", value = 0.06 }
+one = { type = "constant", value = 1 }
+)toml";
+  using enum diagram::IntegrationMethod;
+  for (const char* const diagram : {text, mirrored}) {
+    for (const auto method : {adams, bdf, rodas}) {
+      const Compiled made(diagram);
+      const oblique::solve::Run result =
+          run_of(made, {.until = 2, .tolerance = 1e-8, .samples = 101, .method = method});
+      const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x"),
+                                y = row_values(result, "y");
+      const double moves = 0.5 * std::log(5), arrives = moves + 0.3;
+      for (std::size_t row = 0; row < t.size(); ++row) {
+        const double level = 0.2 * std::max(t[row] - moves, 0.0);
+        EXPECT_NEAR(x[row], std::min(level, 0.06), 1e-6) << t[row];  // a slide may drift by 1e-7
+        const double before = 0.5 * (1 - std::exp(-2 * t[row]));
+        const double after = 0.5 - 0.1 * std::exp(-2 * std::max(t[row] - arrives, 0.0));
+        EXPECT_NEAR(y[row], t[row] < moves ? before : after, 1e-6) << t[row];
+      }
+      EXPECT_TRUE(result.warnings.empty());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

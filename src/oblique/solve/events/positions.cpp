@@ -206,7 +206,9 @@ bool Positions::try_slide(Combination sliding, Combination sides, double t, std:
   const std::vector<std::uint32_t> before = slide_.units();
   std::vector<std::uint32_t> units;
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
-    if (has(sliding, u)) units.push_back(trials_.units()[u]);
+    if (!has(sliding, u)) continue;
+    if (!trials_.is_at_zero(sides, u)) return false;  // the others have moved its level away
+    units.push_back(trials_.units()[u]);
   }
   if (!slide_.begin(units, t, x)) return false;
   if (fits_slide(sliding, sides)) return true;

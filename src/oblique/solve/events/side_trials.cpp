@@ -174,14 +174,21 @@ void SideTrials::find_scales() {
   }
 }
 
+bool SideTrials::is_off_zero(const Trial& trial, std::size_t unit) const {
+  const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
+  return std::abs(trial.event_functions[unit]) > std::max(thresholds_[s], SlidingMode::drift());
+}
+
+bool SideTrials::is_at_zero(Combination sides, std::size_t unit) const {
+  const auto &here = trials_[sides], &there = trials_[sides ^ (1U << unit)];
+  return here && there && !is_off_zero(*here, unit) && !is_off_zero(*there, unit);
+}
+
 /// To which side the event function of a unit goes in a trial: 1, −1, or 0 where it stays at zero.
 int SideTrials::direction(Combination sides, std::size_t unit) const {
   const auto& trial = trials_[sides];
   if (!trial) return 0;
-  const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
-  const double event_function = trial->event_functions[unit];
-  if (std::abs(event_function) > std::max(thresholds_[s], SlidingMode::drift()))
-    return event_function > 0 ? 1 : -1;
+  if (is_off_zero(*trial, unit)) return trial->event_functions[unit] > 0 ? 1 : -1;
   return side_of(trial->rates[unit], scales_[unit]);
 }
 

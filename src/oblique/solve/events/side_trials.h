@@ -51,6 +51,9 @@ class SideTrials {
   /// Whether both sides of the switching surface of a unit lead away from it: then either is a solution.
   bool is_undecided(Combination sides, std::size_t unit) const;
 
+  /// Whether a unit is where it switches, whichever of its sides it stands on.
+  bool is_at_zero(Combination sides, std::size_t unit) const;
+
   /// Whether the solution crosses the switching surface of a unit, wherever the others stand: nothing holds
   /// it there.
   bool crosses(std::size_t unit) const;
@@ -79,6 +82,7 @@ class SideTrials {
   void find_scales();
   void find_broken();
   double largest_jump(std::size_t unit, std::size_t with) const;
+  bool is_off_zero(const Trial& trial, std::size_t unit) const;
   int direction(Combination sides, std::size_t unit) const;
   bool jumps(std::size_t unit) const;
 

@@ -45,6 +45,7 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
       span_(span),
       follows_(program.switches().size(), false),
       rests_(program.switches().size(), false),
+      lifted_(program.switches().size(), false),
       sides_(program.switch_structure()),
       strongest_(program.switch_structure().members.size()),
       firmest_(strongest_.size()),
@@ -92,7 +93,8 @@ void SlidingMode::find_followers() {
 }
 
 /// Puts the units on a side, and what follows them where its event functions then are. Of one that is at zero
-/// on the switching surface, no further off than the states drift from that, none need hold.
+/// on the switching surface, no further off than the states drift from that, none need hold unless it is
+/// lifted.
 bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
   for (std::size_t u = 0; u < units_.size(); ++u) {
@@ -111,8 +113,9 @@ bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
     side.follower_rests.clear();
     for (const std::uint32_t s : followers_) {
       const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-      const double position = side.event_functions[s] > drift() ? 1 : 0;
-      side.follower_rests.push_back(std::abs(side.event_functions[s]) <= drift());
+      const bool rests = std::abs(side.event_functions[s]) <= drift();
+      const double position = (rests ? lifted_[s] : side.event_functions[s] > 0) ? 1 : 0;
+      side.follower_rests.push_back(rests);
       settled = settled && workspace_.discrete_state(discrete_state) == position;
       workspace_.set_discrete_state(discrete_state, position);
     }
@@ -182,7 +185,12 @@ bool SlidingMode::begin(const std::vector<std::uint32_t>& units, double t, std::
   const Kept kept{units_, shares_, rests_};
   std::vector<std::uint32_t> all = units_;
   all.insert(all.end(), units.begin(), units.end());
-  if (all.size() <= kMostUnits && make(std::move(all), kept, t, x) && attracts(t, x)) {
+  bool begins = all.size() <= kMostUnits && make(all, kept, t, x) && attracts(t, x);
+  if (!begins && lift_followers()) {
+    workspace_.load_discrete_states(before);
+    begins = make(std::move(all), kept, t, x) && attracts(t, x);
+  }
+  if (begins) {
     load_base();
     slides_on_.assign(units_.size(), true);
     return true;
@@ -236,10 +244,31 @@ bool SlidingMode::attracts(double t, std::span<const double> x) {
     if (!slides_on_[u] && !is_within) return false;
   }
   if (!lasts(t, x)) return false;
+  std::vector<double> mixed(follows_.size());
+  mixed_rates(mixed);
+  for (const std::uint32_t s : followers_) {
+    if (lifted_[s] && !(mixed[s] > 0)) return false;
+  }
   for (std::size_t u = 0; u < units_.size(); ++u) {
     if (!slides_on_[u] && repulsion(u).value_or(0) > kNoRepulsion) return false;
   }
   return true;
+}
+
+/// Lifts the followers that are at zero on a side, where they do not hold, but which that side drives up;
+/// whether there are any. There they have slid themselves, until what is to slide now has moved their level
+/// away on its other side.
+bool SlidingMode::lift_followers() {
+  bool any = false;
+  for (const SlideSide& side : sides_) {
+    for (std::size_t f = 0; f < side.follower_rests.size() && !side.rates.empty(); ++f) {
+      const std::uint32_t s = followers_[f];
+      if (!side.follower_rests[f] || lifted_[s] || !(side.rates[s] > 0)) continue;
+      lifted_[s] = true;
+      any = true;
+    }
+  }
+  return any;
 }
 
 void SlidingMode::end() {
@@ -253,6 +282,7 @@ void SlidingMode::end() {
   segments_.clear();
   std::fill(follows_.begin(), follows_.end(), false);
   std::fill(rests_.begin(), rests_.end(), false);
+  std::fill(lifted_.begin(), lifted_.end(), false);
   sides_.clear();
   shares_.clear();
 }

@@ -136,6 +136,7 @@ class SlidingMode {
   void resume(const Kept& kept, double t, std::span<const double> x);
   bool make(std::vector<std::uint32_t> units, const Kept& kept, double t, std::span<const double> x);
   bool attracts(double t, std::span<const double> x);
+  bool lift_followers();
   void find_followers();
   bool settle(SlideSide& side, double t, std::span<const double> x);
   bool move_tables_along(double t, std::span<const double> x, bool& still);
@@ -170,6 +171,7 @@ class SlidingMode {
   std::vector<bool> may_jump_;  ///< of each unit: its event function depends on another that jumps, or see
   std::vector<bool> bends_;     ///< it depends on what follows the unit itself
   std::vector<bool> follows_, rests_;
+  std::vector<bool> lifted_;  ///< of each switch: while it follows, it holds at zero
   std::vector<std::uint32_t> followers_;
   std::vector<std::uint32_t> segments_;  ///< the discrete states of tables whose ends are followers
   bool leaves_ = false;                  ///< see `leave_where_it_is`
