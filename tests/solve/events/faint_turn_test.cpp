@@ -237,6 +237,25 @@ y = { type = "integrator", in = ["u", "-y"] }
   EXPECT_THAT(run.warnings, IsEmpty());
 }
 
+// Decays far faster than the steps, in which Adams' method leaves small errors of either sign that move
+// quickly: the edges of a clock come upon all of them, and none turns the comparator over.
+TEST(FaintTurn, IsNotDecidedByAnotherEventWhereErrorsMoveQuickly) {
+  for (const char* const time_constant : {"1e-6", "3e-6", "1e-5"}) {
+    for (const double tolerance : {1e-6, 1e-7, 1e-8, 1e-10}) {
+      const testing::Compiled made(fmt::format(R"(
+p = {{ type = "pulse-train", period = 1, width = 0.25434 }}
+x = {{ type = "transfer-lag", in = "0*p", time_constant = {}, initial = 0.75 }}
+c = {{ type = "comparator", in = "0.5*x" }}
+z = {{ type = "pade-delay-2", in = "-0.5*x", delay = 0.6875 }}
+)",
+                                               time_constant));
+      const oblique::solve::Run run = testing::run_of(
+          made, {.until = 9.5, .tolerance = tolerance, .method = diagram::IntegrationMethod::adams});
+      EXPECT_THAT(testing::row_values(run, "c"), ::testing::Each(1)) << time_constant << ' ' << tolerance;
+    }
+  }
+}
+
 // A decay that the errors of the states let touch zero, at t = 0.44, and go back: what steps later, by which
 // time it is anywhere within them, does not turn it over either. (−x stays below zero for ever.)
 TEST(FaintTurn, IsNotDecidedByAnotherEventWhereZeroWasTouched) {

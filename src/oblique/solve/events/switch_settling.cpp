@@ -92,18 +92,19 @@ bool SwitchSettling::is_near(std::size_t s) const {
 /// it is announced. What crosses zero together with something else is not slow. So does one that is nearer to
 /// zero than rounding of a machine unit, but known to be on its side: what decays to zero does not reach it.
 bool SwitchSettling::waits(std::size_t s, double event_function, double t) {
-  constexpr double kSlow = 1000;  // errors, in the time since it turned over last
+  constexpr double kSlow = 1000;  // errors that no step damps, in the time since it turned over last
   const double rounding = event_functions_.thresholds().rounding(s), size = std::abs(event_function);
   const double may_be_near = unrest_[s].touch ? event_functions_.thresholds()[s] : rounding;
   if (starting_ || near_size(s) > may_be_near || is_announced(program_.switch_structure().unit[s]))
     return false;
   if (is_put_on_zero(s, event_function, t) || !(std::abs(event_function - before_instant_[s]) <= rounding))
     return false;
-  const double error = event_functions_.weigh_errors()[s];
+  const EventFunctionErrors& errors = event_functions_.weigh_errors();
+  const double error = errors[s], undamped = errors.undamped(s);
   const double known_to = std::max(error, event_functions_.thresholds().resolution(s));
   const bool is_in_place = position(s) == (event_function > 0 ? 1 : 0);
   if (is_in_place && size <= rounding && size > known_to) return true;
-  return size <= std::max(rounding, error) && rates_before_[s] * (t - unrest_[s].last) <= kSlow * error;
+  return size <= std::max(rounding, error) && rates_before_[s] * (t - unrest_[s].last) <= kSlow * undamped;
 }
 
 /// Whether something at this instant at t has put an event function on zero to rounding, which had not come
