@@ -71,6 +71,7 @@ bool tells_of_levels_alone(const Trial& trial) {
   for (std::size_t end = 0; (end = rest.find(';')) != std::string_view::npos; rest.remove_prefix(end + 1)) {
     const std::string_view warning = rest.substr(0, end);
     if (warning.find(" depends on , which slides along its switching surface") == std::string_view::npos &&
+        warning.find(") slides along its switching surface from ") == std::string_view::npos &&
         warning.find(", though what it compares lies on the other side") == std::string_view::npos)
       return false;
   }

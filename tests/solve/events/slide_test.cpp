@@ -330,6 +330,32 @@ y = { type = "integrator", in = ["one"] }
   }
 }
 
+// A motor that is held at 0.3: beyond it what a real switch makes of that is never left alone.
+TEST(Slide, OfWhatSetsOffAnEventItselfIsToldOf) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("motor", R"toml(
+[outputs]
+v = { doc = "Speed." }
+n = { doc = "It has been above." }
+[memories]
+k = 0
+[equations]
+n = "k"
+"der(v)" = "sign(0.3 - v)"
+[start]
+v = 0
+[[events]]
+when = "v > 0.3"
+set = { k = 1 }
+)toml");
+  const auto result = run_of(Compiled("m = { type = \"motor\" }", "", library), {.until = 1});
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(
+      result.warnings[0].what,
+      "'m' (v > 0.3) slides along its switching surface from t = 0.3 s: it switches without end, which is "
+      "not counted and not stored");
+  EXPECT_EQ(result.warnings[0].remedy, "give the switch that slides a hysteresis");
+}
+
 /// Two relays that hold integrators at zero against 0.3, so that each is up for 0.65 of the time, and what q
 /// integrates of them.
 Compiled two_held(const std::string& together) {

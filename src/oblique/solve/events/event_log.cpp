@@ -61,7 +61,7 @@ void EventLog::record_slides(const std::vector<std::uint32_t>& before,
   for (const std::uint32_t unit : slide.units()) {
     if (!contains(before, unit)) tell(unit, "stays at");
   }
-  warn_of_torn(slide, t);
+  warn_of_uncounted(slide, t);
   if (slide.units() != before) warn_of_acting_together(slide, t);
 }
 
@@ -220,28 +220,34 @@ void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const 
        "'initial'"});
 }
 
-/// Tells of switches with events that follow what slides: what these would do is not counted.
-void EventLog::warn_of_torn(const SlidingMode& slide, double t) {
+/// Tells of switches with events that slide, or follow what does: what these would do is not counted.
+void EventLog::warn_of_uncounted(const SlidingMode& slide, double t) {
   constexpr std::string_view kWhen = " from t = ";
-  for (const std::uint32_t s : slide.followers()) {
-    if (!slide.is_torn(s)) continue;
-    const network::Switch& follower = program_.switches()[s];
-    const std::string what = fmt::format(
-        "'{}' ({}) depends on '{}', which slides along its switching surface{}{:.9g} s: it switches "
-        "without end, which is not counted and not stored",
-        follower.block, follower.comparison, first_of(slide.followed_by(s)).block, kWhen, t);
-    const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
-      return warning.what.substr(0, warning.what.find(kWhen)) == what.substr(0, what.find(kWhen));
-    });
-    if (told) continue;
+  const auto tell = [&](std::uint32_t s, std::string_view how, bool also_beside) {
+    const network::Switch& made = program_.switches()[s];
     const bool acts =
         std::any_of(program_.events().begin(), program_.events().end(), [&](const network::Event& event) {
           if (event.repeats) return false;  // a table goes along on both sides
-          if (event.block == follower.block) return true;
+          if (also_beside && event.block == made.block) return true;
           const auto read = program_.switch_structure().positions_in(event.condition);
           return std::binary_search(read.begin(), read.end(), s);
         });
-    if (acts) warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
+    const std::string what = fmt::format(
+        "'{}' ({}) {} along its switching surface{}{:.9g} s: it switches without end, which is not counted "
+        "and not stored",
+        made.block, made.comparison, how, kWhen, t);
+    const bool told = std::any_of(warnings_.begin(), warnings_.end(), [&](const text::Diagnostic& warning) {
+      return warning.what.substr(0, warning.what.find(kWhen)) == what.substr(0, what.find(kWhen));
+    });
+    if (acts && !told)
+      warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
+  };
+  for (const std::uint32_t unit : slide.units()) {
+    for (const std::uint32_t s : program_.switch_structure().members[unit]) tell(s, "slides", false);
+  }
+  for (const std::uint32_t s : slide.followers()) {
+    if (!slide.is_torn(s)) continue;
+    tell(s, fmt::format("depends on '{}', which slides", first_of(slide.followed_by(s)).block), true);
   }
 }
 

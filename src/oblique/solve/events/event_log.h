@@ -75,7 +75,7 @@ class EventLog {
   const network::Switch& first_of(std::uint32_t unit) const;
   void warn_of_unit(std::uint32_t unit, const char* what, const std::string& rest, const char* remedy);
   void warn_of_leaving(std::uint32_t unit, SlidingMode::Doubt doubt, double t);
-  void warn_of_torn(const SlidingMode& slide, double t);
+  void warn_of_uncounted(const SlidingMode& slide, double t);
   void warn_of_acting_together(const SlidingMode& slide, double t);
 
   const network::Program& program_;
