@@ -483,5 +483,41 @@ q = { type = "servo-amplifier", in = ["q3", "-q", "-u"], initial = 1, gain = "in
   EXPECT_NEAR(after * after * after - after, -1, kNewton);
 }
 
+// 2 max(y, 0) − max(−y, 0) = sin(t + φ) is solved by sin/2 above zero and by sin below. At the corner none of
+// its comparisons holds, as where the loop begins, and with none of them y is not in it at all.
+TEST(LoopJumps, BeginAtACornerAtWhichNothingHolds) {
+  const auto truth = [](double phase, const oblique::solve::Run& result) {
+    const std::vector<double> t = row_values(result, "t"), y = row_values(result, "y");
+    for (std::size_t row = 0; row < t.size(); ++row) {
+      const double sine = std::sin(t[row] + phase);
+      EXPECT_NEAR(y[row], sine > 0 ? sine / 2 : sine, kNewton) << t[row] << ' ' << phase;
+    }
+  };
+  for (const double phase : {0.0, 0.5, -0.5}) {
+    truth(phase, run_of(Compiled(fmt::format(R"toml(
+u = {{ type = "time-function", formula = "sin(time + {})" }}
+zero = {{ type = "constant", value = 0 }}
+m = {{ type = "inverter", in = "y" }}
+p = {{ type = "maximum", x = "y", y = "zero" }}
+n = {{ type = "maximum", x = "m", y = "zero" }}
+y = {{ type = "servo-amplifier", in = ["2*p", "-n", "-u"], gain = "inf", bandwidth = "inf" }}
+)toml",
+                                             phase)),
+                        {.until = 10}));
+    for (const double start : {0.0, 0.1, -0.1}) {
+      const diagram::BlockLibrary library = testing::shipped_blocks_and("corner", fmt::format(R"toml(
+[outputs]
+y = {{ doc = "Solution." }}
+[implicit]
+y = "2*max(y, 0) - max(-y, 0) - sin(time + {})"
+[start]
+y = {}
+)toml",
+                                                                                              phase, start));
+      truth(phase, run_of(Compiled("y = { type = \"corner\" }", "", library), {.until = 10}));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -121,6 +121,8 @@ LoopJumps::LoopJumps(const network::Program& program, network::Workspace& worksp
                  [&](std::uint32_t s) { return !is_limit(program, loop, s); });
     Watched watched{loop, SwitchPlacing(program, switches), SwitchPlacing(program, within),
                     directions_of(program, loop)};
+    if (watched.directions.size() == 0 && is_small(program, loop))
+      equations_.push_back({loop, SwitchPlacing(program, watched.within.switches())});
     // Of linear equations that nothing changes on the way there is one solution.
     if (watched.directions.size() == 0 ||
         (program.loop_is_linear(loop) && watched.placing.switches().empty()))
@@ -140,7 +142,7 @@ Eigen::VectorXd LoopJumps::unknowns_of(const Watched& watched, const std::vector
 }
 
 void LoopJumps::begin() {
-  if (watched_.empty()) return;
+  if (watched_.empty() && equations_.empty()) return;
   unknowns_.clear();
   for (std::size_t u = 0; u < program_.unknowns().size(); ++u) unknowns_.push_back(workspace_.unknown(u));
   discrete_states_.assign(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
@@ -185,14 +187,31 @@ void LoopJumps::place(std::size_t loop, SwitchPlacing& placing, const std::vecto
   for (std::size_t u = 0; u < guesses.size(); ++u) workspace_.set_unknown(u, guesses[u]);
 }
 
+void LoopJumps::place_near_guesses(double off, double t, std::span<const double> x) {
+  const auto place_near = [&](std::size_t loop, SwitchPlacing& within) {
+    std::vector<double> guesses;
+    for (const std::size_t u : program_.loops()[loop].unknowns)
+      guesses.push_back(workspace_.unknown(u) + off);
+    place(loop, within, guesses, t, x);
+  };
+  for (Watched& watched : watched_) {
+    if (!watched.blind || watched.placing.has_tables()) place_near(watched.loop, watched.within);
+  }
+  for (Equations& equations : equations_) place_near(equations.loop, equations.within);
+}
+
+bool LoopJumps::place_beside_guesses(double t, std::span<const double> x) {
+  constexpr double kBeside = 1e-6;  // [machine unit]
+  const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
+  for (std::size_t u = 0; u < unknowns_.size(); ++u) workspace_.set_unknown(u, unknowns_[u]);
+  place_near_guesses(kBeside, t, x);
+  return !std::equal(before.begin(), before.end(), workspace_.discrete_states().begin());
+}
+
 void LoopJumps::place_at_guesses(double t, std::span<const double> x) {
   begin();
+  place_near_guesses(0, t, x);
   for (Watched& watched : watched_) {
-    if (watched.blind && !watched.placing.has_tables()) continue;
-    std::vector<double> guesses;
-    for (const std::size_t u : program_.loops()[watched.loop].unknowns)
-      guesses.push_back(workspace_.unknown(u));
-    place(watched.loop, watched.within, guesses, t, x);
     // From line to line of a table, as no Newton's method goes.
     if (!watched.blind && watched.placing.has_tables()) go_from_before(watched, t, x);
   }

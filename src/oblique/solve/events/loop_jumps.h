@@ -52,10 +52,13 @@ class LoopJumps {
   void expect(std::size_t discrete_state, double position);
   /// Puts the switches and tables of a loop where these unknowns ask for them, whether they solve it or not.
   void place(std::size_t loop, const std::vector<double>& unknowns, double t, std::span<const double> x);
-  /// The same, but for the limits of elements, at the guesses of every loop that amplifiers hold, or on which
-  /// a table acts: with the switches as they stand elsewhere it would be solved where it does not begin.
-  /// (That a guess is beyond a limit says nothing: what is behind it has not settled yet.)
+  /// The same, but for the limits of elements, at the guesses of every loop that amplifiers or equations
+  /// hold, or on which a table acts: with the switches as they stand elsewhere it would be solved where it
+  /// does not begin. (That a guess is beyond a limit says nothing: what is behind it has not settled yet.)
   void place_at_guesses(double t, std::span<const double> x);
+  /// The same a moment beside the guesses: at a corner none of the switches that bend there need hold, and
+  /// the loop would answer to nothing. Whether that puts any elsewhere.
+  bool place_beside_guesses(double t, std::span<const double> x);
   /// Looks at all loops at (t, x), where everything has settled. True where one was put elsewhere: everything
   /// is then to be settled again. What `leaves` a solution that its elements do not hold, though they lead
   /// nowhere, goes to another (where a run starts OtherSolutions look for that).
@@ -69,6 +72,11 @@ class LoopJumps {
   bool go_past_branch_end(std::size_t lost, double t, std::span<const double> x);
 
  private:
+  /// A loop of equations of one's own, which say nothing of where it goes.
+  struct Equations {
+    std::size_t loop = 0;
+    SwitchPlacing within;  ///< see Watched
+  };
   struct Watched {
     std::size_t loop = 0;
     SwitchPlacing placing;       ///< of what turns over with the unknowns of the loop, and acts on it
@@ -88,6 +96,7 @@ class LoopJumps {
 
   void place(std::size_t loop, SwitchPlacing& placing, const std::vector<double>& unknowns, double t,
              std::span<const double> x);
+  void place_near_guesses(double off, double t, std::span<const double> x);
   std::optional<Pull> pull(const Watched& watched, double t, std::span<const double> x,
                            network::Workspace& workspace);
   std::optional<Pull> pull_at(Watched& watched, const Eigen::VectorXd& z, double t, std::span<const double> x,
@@ -104,6 +113,7 @@ class LoopJumps {
   const SlidingMode& slide_;
   const Thresholds& thresholds_;
   std::vector<Watched> watched_;
+  std::vector<Equations> equations_;
   bool any_goes_ = false;
   std::vector<double> unknowns_, discrete_states_;  ///< as they were noted
   std::vector<double> signals_;

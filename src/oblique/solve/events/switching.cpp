@@ -60,6 +60,7 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
                   [](const network::State& state) { return state.start_node.has_value(); });
   // States take their starts again from what events change at this instant, until one sets states itself.
   bool starting = true, takes = any_start, first = true, has_gone = false;
+  bool beside = false;   // of the guesses of loops at a corner
   bool last = false;     // loops go where everything else has settled
   bool several = false;  // positions agree, of which settling chooses the one after the other
   const auto take = [&] {
@@ -130,9 +131,9 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     } catch (const SolveError& failure) {
       // Where the switches in it stand for no signals yet, a loop may have no solution. (Nor where states
       // that start from signals are not there yet: where it would go then says nothing.)
-      if (failure.kind() != SolveError::Kind::singular_loop || any_start || std::exchange(has_gone, true) ||
-          !loop_jumps_.go(t, x))
-        throw;
+      if (failure.kind() != SolveError::Kind::singular_loop) throw;
+      if (!std::exchange(beside, true) && loop_jumps_.place_beside_guesses(t, x)) continue;
+      if (any_start || std::exchange(has_gone, true) || !loop_jumps_.go(t, x)) throw;
     }
   }
   if (!active()) return;
