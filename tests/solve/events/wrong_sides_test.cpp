@@ -116,5 +116,29 @@ v = { type = "integrator", in = ["i", "-0.1*v"] }
   EXPECT_NEAR(row_values(run, "v").back(), at_end, 1e-6);  // 100 tolerances
 }
 
+// A lag that is 1e-8 s behind sin t differs from it by −1e-8 cos t, which is as much as a relative tolerance
+// of 1e-8 leaves: that it goes over to above zero at π/2 is seen or told.
+TEST(WrongSides, OfWhatIsAsSmallAsTheTolerance) {
+  const Compiled made(R"toml(
+u = { type = "time-function", formula = "sin(time)" }
+x = { type = "transfer-lag", in = "u", time_constant = 1e-8 }
+c = { type = "comparator", in = ["-u", "x"] }
+)toml");
+  for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+    const oblique::solve::Run run = run_of(made, {.until = 4, .tolerance = tolerance, .samples = 21});
+    const std::vector<double> t = row_values(run, "t"), c = row_values(run, "c");
+    bool right = true;
+    for (std::size_t row = 0; row < t.size(); ++row)
+      right = right && c[row] == (std::cos(t[row]) < 0 ? 1 : 0);
+    if (right) continue;
+    EXPECT_THAT(run.warnings,
+                ::testing::Contains(::testing::Field(
+                    &text::Diagnostic::what,
+                    ::testing::AllOf(StartsWith("'c' (in > 0) does not hold from t = 1.57"),
+                                     HasSubstr("lies on the other side: by less than its error, ")))))
+        << tolerance;
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -4,6 +4,11 @@
 #include <oblique/solve/events/position_effects.h>
 
 namespace oblique::solve {
+namespace {
+
+constexpr double kSurely = 30;  ///< errors
+
+}  // namespace
 
 WrongSides::WrongSides(const network::Program& program, network::Workspace& workspace,
                        const SlidingMode& slide, const SwitchSettling& settling,
@@ -29,8 +34,7 @@ void WrongSides::allow() {
 
 bool WrongSides::limit_slack() {
   // What turns over and back by rounding would be cut and turn at every instant that a number can tell.
-  constexpr int kMostCuts = 4;    // in a step
-  constexpr double kSurely = 30;  // errors
+  constexpr int kMostCuts = 4;  // in a step
   Thresholds& thresholds = event_functions_.thresholds();
   const EventFunctionErrors& errors = event_functions_.weigh_errors();
   bool any = false;
@@ -54,14 +58,17 @@ void WrongSides::tell(const RestingComparisons& resting, double t, std::span<con
     const std::uint32_t unit = program_.switch_structure().unit[s];
     const auto since = event_functions_.thresholds().let_since(s);
     if (!since || told_[unit] || !(t - *since > kLong * span_)) continue;
-    // What has not turned over yet, or was looked at and let touch, is a decay, which stays on its side.
-    if (settling_.last_turn(s) == 0 || settling_.touch(s) || resting.contains(unit)) continue;
+    // What has not turned over yet, or was looked at and let touch, is a decay, which stays on its side,
+    // unless it goes on to the other one.
+    const auto touch = settling_.touch(s);
+    const bool surely = event_functions_.against(s) > kSurely * std::max(errors[s], touch.value_or(0));
+    if (resting.contains(unit) || ((settling_.last_turn(s) == 0 || touch) && !surely)) continue;
     if (!changes_signals(program_, workspace_, unit, t, x) &&
         !changes_rates(program_, workspace_, unit, t, x))
       continue;
     told_[unit] = true;
     const bool holds = workspace_.discrete_state(program_.switches()[s].discrete_state) == 1;
-    log_.warn_of_hidden(s, holds, *since, t, errors[s]);
+    log_.warn_of_hidden(s, holds, *since, t, surely ? errors.undamped(s) : errors[s]);
   }
 }
 
