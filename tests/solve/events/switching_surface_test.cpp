@@ -425,5 +425,34 @@ one = { type = "constant", value = 1 }
   }
 }
 
+// x slides along 1 − t/2, and the dead zone that it comes into at t = 1.2 gives 0, which is not above zero;
+// nor is that below, until x leaves it again at t = 2.8.
+TEST(Slide, LeavesNothingHoldingThatComesToZeroBesideIt) {
+  const Compiled made(R"toml(
+u = { type = "ramp", slope = -0.5, initial = 1 }
+d = { type = "summer", in = ["u", "-x"] }
+r = { type = "sign", in = "d" }
+x = { type = "integrator", in = "r", initial = 1 }
+z = { type = "dead-zone", in = "x", low = -0.4, high = 0.4 }
+a = { type = "comparator", in = "z" }
+b = { type = "comparator", in = "-z" }
+p = { type = "integrator", in = "a" }
+q = { type = "integrator", in = "b" }
+)toml");
+  const oblique::solve::Run result = run_of(made, {.until = 4, .samples = 41});
+  const std::vector<double> t = row_values(result, "t"), a = row_values(result, "a"),
+                            b = row_values(result, "b");
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    if (std::abs(t[row] - 1.2) > 1e-6) {
+      EXPECT_EQ(a[row], t[row] < 1.2 ? 1 : 0) << t[row];
+    }
+    if (std::abs(t[row] - 2.8) > 1e-6) {
+      EXPECT_EQ(b[row], t[row] > 2.8 ? 1 : 0) << t[row];
+    }
+  }
+  EXPECT_NEAR(row_values(result, "p").back(), 1.2, 1e-6);  // a slide may drift by 1e-7
+  EXPECT_NEAR(row_values(result, "q").back(), 1.2, 1e-6);
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -85,7 +85,10 @@ bool Positions::choose(const std::vector<std::uint32_t>& units,
   trials_.run(tried, bends_, t, x);
   auto sides = standing(preferred, true);
   if (!sides) {
-    if (slide(present, t, x)) return true;
+    if (slide(present, t, x)) {
+      lower_at_zero(t, x);
+      return true;
+    }
     trials_.take_back();
     sides = standing(preferred, false);
   }
@@ -165,6 +168,18 @@ void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vect
         return after->event_functions[s] == before->event_functions[s] && std::abs(after->rates[s]) <= still;
       });
   if (!stays) workspace_.load_discrete_states(positions);
+}
+
+/// Puts the units that stay at zero exactly along with a slide, as what a dead zone gives, where none of
+/// their comparisons holds.
+void Positions::lower_at_zero(double t, std::span<const double> x) {
+  std::vector<double> event_functions(program_.switches().size());
+  if (!program_.event_functions(t, x.data(), event_functions.data(), workspace_)) return;
+  const std::vector<double> none(event_functions.size(), 0.0);
+  for (const std::uint32_t unit : trials_.units()) {
+    const std::uint32_t s = program_.switch_structure().members[unit].front();
+    if (slide_.rests(s) && event_functions[s] == 0) prefer_where_nothing_changes(unit, none, t, x);
+  }
 }
 
 /// Leaves units where they are that move on either side, but stay as long as no comparison holds.

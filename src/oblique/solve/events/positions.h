@@ -59,6 +59,7 @@ class Positions {
   bool take(Combination sides, const std::vector<double>& preferred, double t, std::span<const double> x);
   void prefer_where_nothing_changes(std::uint32_t unit, const std::vector<double>& preferred, double t,
                                     std::span<const double> x);
+  void lower_at_zero(double t, std::span<const double> x);
   void stop(Combination sides, const std::vector<std::uint32_t>& may_stop, double t,
             std::span<const double> x);
   bool slide(Combination present, double t, std::span<const double> x);
