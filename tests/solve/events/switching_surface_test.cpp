@@ -454,5 +454,48 @@ q = { type = "integrator", in = "b" }
   EXPECT_NEAR(row_values(result, "q").back(), 1.2, 1e-6);
 }
 
+// dx/dt = 0.3 − a from −0.5, or its mirror image. What a compares is zero from the first edge that x comes to
+// on, where it does not hold: x goes on, to the other edge if there is one, and slides there.
+TEST(Slide, BeginsAtNoCornerBehindWhichNothingHolds) {
+  struct Flat {
+    const char* blocks;
+    double sign, x, a;  ///< whether it comes from below; at the end
+  };
+  const Flat flats[] = {
+      {"m = { type = \"dead-zone\", in = \"x\", low = -0.2, high = 0.2 }\na = { type = \"comparator\", in = "
+       "\"m\" }",
+       1, 0.2, 0.3},
+      {"m = { type = \"minimum\", x = \"x\", y = \"o\" }\na = { type = \"comparator\", in = \"m\" }", 1, 0.7,
+       0},
+      {"m = { type = \"absolute-value\", in = \"x\" }\na = { type = \"comparator\", in = [\"x\", \"-m\"] }",
+       1, 0.7, 0},
+      {"m = { type = \"limiter\", in = \"x\", low = -1, high = 0.2 }\na = { type = \"electronic-switch\", on "
+       "= "
+       "\"one\", control = \"m\", threshold = 0.2 }",
+       1, 0.7, 0},
+      {"m = { type = \"dead-zone\", in = \"x\", low = -0.2, high = 0.2 }\na = { type = \"comparator\", in = "
+       "\"-m\" }",
+       -1, -0.2, 0.3},
+      {"m = { type = \"limiter\", in = \"x\", low = 0, high = 1 }\na = { type = \"comparator\", in = \"-m\" "
+       "}",
+       -1, -0.7, 0},
+      {"m = { type = \"diode\", in = \"x\" }\na = { type = \"comparator\", in = \"-m\" }", -1, -0.7, 0},
+  };
+  using enum diagram::IntegrationMethod;
+  for (const Flat& flat : flats) {
+    for (const auto method : {adams, bdf, rodas}) {
+      const Compiled made(fmt::format(
+          "one = {{ type = \"constant\" }}\no = {{ type = \"constant\", value = 0 }}\n{0}\nx = {{ type = "
+          "\"integrator\", in = [\"{1}*one\", \"{2}*a\"], initial = {3} }}\n",
+          flat.blocks, 0.3 * flat.sign, -flat.sign, -0.5 * flat.sign));
+      const oblique::solve::Run result = run_of(made, {.until = 4, .samples = 5, .method = method});
+      EXPECT_NEAR(row_values(result, "x").back(), flat.x, 1e-6) << flat.blocks;  // a slide may drift by 1e-7
+      EXPECT_NEAR(row_values(result, "a").back(), flat.a, 1e-6) << flat.blocks;
+      EXPECT_TRUE(result.warnings.empty()) << flat.blocks;
+      EXPECT_LE(result.event_count, 5) << flat.blocks;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -223,12 +223,30 @@ bool Positions::try_slide(Combination sliding, Combination sides, double t, std:
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
     if (!has(sliding, u)) continue;
     if (!trials_.is_at_zero(sides, u)) return false;  // the others have moved its level away
+    for (std::size_t corner = 0; corner < trials_.units().size(); ++corner) {
+      if (corner != u && !trials_.turns_at_corner(sides, u, corner)) return false;
+    }
     units.push_back(trials_.units()[u]);
   }
   if (!slide_.begin(units, t, x)) return false;
-  if (fits_slide(sliding, sides)) return true;
+  if (fits_slide(sliding, sides)) {
+    let_others_rest(t, x);
+    return true;
+  }
   slide_.keep(before, t, x);
   return false;
+}
+
+/// Lets those rest along with a slide that has begun which are at zero with it, though they were decided
+/// before: the corner of what a comparator reads.
+void Positions::let_others_rest(double t, std::span<const double> x) {
+  std::vector<double> event_functions(program_.switches().size());
+  if (!program_.event_functions(t, x.data(), event_functions.data(), workspace_)) return;
+  for (std::uint32_t s = 0; s < event_functions.size(); ++s) {
+    if (slide_.holds(s) || slide_.follows(s) || program_.switches()[s].rate) continue;
+    const double near = std::max(thresholds_[s], SlidingMode::drift());
+    if (std::abs(event_functions[s]) <= near && slide_.holds_still(s, kNoLaterRate)) slide_.let_rest(s);
+  }
 }
 
 /// Whether all other units go to their sides while a slide has begun, or stay at zero along with it: these

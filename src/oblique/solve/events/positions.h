@@ -64,6 +64,7 @@ class Positions {
             std::span<const double> x);
   bool slide(Combination present, double t, std::span<const double> x);
   bool try_slide(Combination sliding, Combination sides, double t, std::span<const double> x);
+  void let_others_rest(double t, std::span<const double> x);
   bool fits_slide(Combination sliding, Combination sides);
 
   const network::Program& program_;

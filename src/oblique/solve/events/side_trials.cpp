@@ -184,6 +184,30 @@ bool SideTrials::is_at_zero(Combination sides, std::size_t unit) const {
   return here && there && !is_off_zero(*here, unit) && !is_off_zero(*there, unit);
 }
 
+bool SideTrials::turns_at_corner(Combination sides, std::size_t unit, std::size_t corner) const {
+  constexpr double kSame = 1e-9;  // of the rates: what follows the other alone moves with it in all trials
+  bool above = false, below = false, flat = false;
+  for (const bool upper : {false, true}) {
+    const Combination there = upper ? sides | 1U << corner : sides & ~(1U << corner);
+    const auto &one = trials_[there], &other = trials_[there ^ (1U << unit)];
+    if (!one || !other) return true;
+    const double a = one->rates[unit].rate * other->rates[corner].rate;
+    const double b = other->rates[unit].rate * one->rates[corner].rate;
+    const double moved = std::max(std::abs(one->rates[corner].rate), std::abs(other->rates[corner].rate));
+    if (!(std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b))) || moved == 0) return true;
+    const Trial& moving = std::abs(one->rates[corner].rate) == moved ? *one : *other;
+    const double slope = moving.rates[unit].rate / moving.rates[corner].rate;
+    above = above || (upper ? slope > 0 : slope < 0);
+    below = below || (upper ? slope < 0 : slope > 0);
+    flat = flat || slope == 0;
+  }
+  const network::SwitchStructure& structure = program_.switch_structure();
+  const auto& members = structure.members[units_[unit]];
+  return std::any_of(members.begin(), members.end(), [&](std::uint32_t s) {
+    return structure.opposite[s] ? below && (above || flat) : above && (below || flat);
+  });
+}
+
 /// To which side the event function of a unit goes in a trial: 1, −1, or 0 where it stays at zero.
 int SideTrials::direction(Combination sides, std::size_t unit) const {
   const auto& trial = trials_[sides];

@@ -54,6 +54,11 @@ class SideTrials {
   /// Whether a unit is where it switches, whichever of its sides it stands on.
   bool is_at_zero(Combination sides, std::size_t unit) const;
 
+  /// Whether any comparison of a unit turns over where another unit does, at a corner of what it compares:
+  /// not that of what is flat on the one side of the corner, where it does not hold, nor on the other. True
+  /// where it does not follow the other alone.
+  bool turns_at_corner(Combination sides, std::size_t unit, std::size_t corner) const;
+
   /// Whether the solution crosses the switching surface of a unit, wherever the others stand: nothing holds
   /// it there.
   bool crosses(std::size_t unit) const;

@@ -532,6 +532,15 @@ void SlidingMode::mixed_rates(std::span<double> rates) const {
   }
 }
 
+bool SlidingMode::holds_still(std::size_t s, double part) const {
+  double mixed = 0, largest = 0;
+  for (const SlideSide& side : sides_) {
+    mixed += side.weight * side.rates[s];
+    largest = std::max(largest, std::abs(side.rates[s]));
+  }
+  return largest > 0 && std::abs(mixed) <= part * largest;
+}
+
 double SlidingMode::fastest() const {
   double largest = 0;
   for (std::size_t i = 0; i < program_.n_states(); ++i) {

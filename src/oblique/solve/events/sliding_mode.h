@@ -109,6 +109,9 @@ class SlidingMode {
   static constexpr double kNoDrive = 1e-6;
   /// d(event function)/dt of every switch in the mixture.
   void mixed_rates(std::span<double> rates) const;
+  /// Whether the event function of a switch moves on some side, but in the mixture by no more than this part
+  /// of that.
+  bool holds_still(std::size_t s, double part) const;
   /// The largest of all dx/dt in the mixture.
   double fastest() const;
   /// Whether a switch that follows is in one position on one side and in the other on another.
