@@ -28,7 +28,7 @@ y = {{ type = "integrator", in = "-b" }}
     IndependentUnits independent(made.program);
     SlidingMode slide(made.program, workspace, edges, independent, 1);
     ASSERT_EQ(made.program.states()[1].name, "y");
-    EXPECT_EQ(slide.begin({0, 1}, 0, std::vector<double>{0, jump}), jump == 0);
+    EXPECT_EQ(slide.begin({0, 1}, {}, 0, std::vector<double>{0, jump}), jump == 0);
   }
 }
 

@@ -73,6 +73,7 @@ bool Positions::choose(const std::vector<std::uint32_t>& units,
                        std::span<const double> x) {
   undecided_.clear();
   resting_.clear();
+  flat_.clear();
   stopped_.clear();
   const std::vector<std::uint32_t> tried = set_bends_apart(units, preferred_positions, here);
   if (tried.size() > kMostUnits) return false;
@@ -119,6 +120,7 @@ bool Positions::take(Combination sides, const std::vector<double>& preferred, do
                      std::span<const double> x) {
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
     if (trials_.rests(sides, u)) resting_.push_back(trials_.units()[u]);
+    if (trials_.is_flat(sides, u)) flat_.push_back(trials_.units()[u]);
     if (trials_.is_undecided(sides, u)) undecided_.push_back(trials_.units()[u]);
   }
   if (!trials_.place(sides, bends_, t, x)) return false;
@@ -219,16 +221,19 @@ bool Positions::slide(Combination present, double t, std::span<const double> x) 
 bool Positions::try_slide(Combination sliding, Combination sides, double t, std::span<const double> x) {
   if (!trials_.place(sides, bends_, t, x)) return false;
   const std::vector<std::uint32_t> before = slide_.units();
-  std::vector<std::uint32_t> units;
+  std::vector<std::uint32_t> units, silent;
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
     if (!has(sliding, u)) continue;
     if (!trials_.is_at_zero(sides, u)) return false;  // the others have moved its level away
     for (std::size_t corner = 0; corner < trials_.units().size(); ++corner) {
-      if (corner != u && !trials_.turns_at_corner(sides, u, corner)) return false;
+      if (corner == u) continue;
+      const SideTrials::AtCorner at = trials_.at_corner(sides, u, corner);
+      if (!at.turns) return false;
+      silent.insert(silent.end(), at.silent.begin(), at.silent.end());
     }
     units.push_back(trials_.units()[u]);
   }
-  if (!slide_.begin(units, t, x)) return false;
+  if (!slide_.begin(units, silent, t, x)) return false;
   if (fits_slide(sliding, sides)) {
     let_others_rest(t, x);
     return true;

@@ -44,6 +44,8 @@ class Positions {
 
   /// Those whose event functions stay at zero where the last `choose` put them.
   const std::vector<std::uint32_t>& resting() const { return resting_; }
+  /// Those of them that do so at zero exactly, behind a corner.
+  const std::vector<std::uint32_t>& flat() const { return flat_; }
   /// Those of them that either side would lead away.
   const std::vector<std::uint32_t>& stopped() const { return stopped_; }
 
@@ -74,7 +76,7 @@ class Positions {
   Bends bends_;  ///< apart from the units that are tried
   SideTrials trials_;
   LevelRest level_rest_;
-  std::vector<std::uint32_t> undecided_, resting_, stopped_;
+  std::vector<std::uint32_t> undecided_, resting_, flat_, stopped_;
 };
 
 }  // namespace oblique::solve

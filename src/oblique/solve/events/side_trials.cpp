@@ -184,17 +184,17 @@ bool SideTrials::is_at_zero(Combination sides, std::size_t unit) const {
   return here && there && !is_off_zero(*here, unit) && !is_off_zero(*there, unit);
 }
 
-bool SideTrials::turns_at_corner(Combination sides, std::size_t unit, std::size_t corner) const {
+SideTrials::AtCorner SideTrials::at_corner(Combination sides, std::size_t unit, std::size_t corner) const {
   constexpr double kSame = 1e-9;  // of the rates: what follows the other alone moves with it in all trials
   bool above = false, below = false, flat = false;
   for (const bool upper : {false, true}) {
     const Combination there = upper ? sides | 1U << corner : sides & ~(1U << corner);
     const auto &one = trials_[there], &other = trials_[there ^ (1U << unit)];
-    if (!one || !other) return true;
+    if (!one || !other) return {};
     const double a = one->rates[unit].rate * other->rates[corner].rate;
     const double b = other->rates[unit].rate * one->rates[corner].rate;
     const double moved = std::max(std::abs(one->rates[corner].rate), std::abs(other->rates[corner].rate));
-    if (!(std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b))) || moved == 0) return true;
+    if (!(std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b))) || moved == 0) return {};
     const Trial& moving = std::abs(one->rates[corner].rate) == moved ? *one : *other;
     const double slope = moving.rates[unit].rate / moving.rates[corner].rate;
     above = above || (upper ? slope > 0 : slope < 0);
@@ -202,10 +202,13 @@ bool SideTrials::turns_at_corner(Combination sides, std::size_t unit, std::size_
     flat = flat || slope == 0;
   }
   const network::SwitchStructure& structure = program_.switch_structure();
-  const auto& members = structure.members[units_[unit]];
-  return std::any_of(members.begin(), members.end(), [&](std::uint32_t s) {
-    return structure.opposite[s] ? below && (above || flat) : above && (below || flat);
-  });
+  AtCorner found{false, {}};
+  for (const std::uint32_t s : structure.members[units_[unit]]) {
+    const bool holds = structure.opposite[s] ? below : above, lets = structure.opposite[s] ? above : below;
+    found.turns = found.turns || (holds && (lets || flat));
+    if (!holds) found.silent.push_back(s);
+  }
+  return found;
 }
 
 /// To which side the event function of a unit goes in a trial: 1, −1, or 0 where it stays at zero.
@@ -262,9 +265,33 @@ bool SideTrials::stands(Combination sides, bool strictly) const {
 
 bool SideTrials::keeps(Combination sides, Combination preferred) const {
   for (std::size_t u = 0; u < units_.size(); ++u) {
-    if (has(sides, u) != has(preferred, u) && rests(sides, u)) return false;
+    if (!rests(sides, u)) continue;
+    if (has(sides, u) != has(preferred, u) || drives_at_zero(sides, u)) return false;
   }
   return true;
+}
+
+/// Whether a unit that is at zero exactly, and stays so, moves others by a comparison that would hold there.
+bool SideTrials::drives_at_zero(Combination sides, std::size_t unit) const {
+  const auto &here = trials_[sides], &there = trials_[sides ^ (1U << unit)];
+  if (!here || !there || here->event_functions[unit] != 0) return false;
+  const network::SwitchStructure& structure = program_.switch_structure();
+  const auto& members = structure.members[units_[unit]];
+  const bool holds = std::any_of(members.begin(), members.end(), [&](std::uint32_t s) {
+    return has(sides, unit) != structure.opposite[s] &&
+           program_.switches()[s].turning == network::Turning::jumps;
+  });
+  return holds && !std::equal(here->rates.begin(), here->rates.end(), there->rates.begin(),
+                              [](const ProbedRate& a, const ProbedRate& b) { return a.rate == b.rate; });
+}
+
+bool SideTrials::is_flat(Combination sides, std::size_t unit) const {
+  if (!trials_[sides] || !rests(sides, unit) || trials_[sides]->event_functions[unit] != 0) return false;
+  for (std::size_t other = 0; other < units_.size(); ++other) {
+    const auto& there = trials_[sides ^ (1U << other)];
+    if (other != unit && there && there->rates[unit].rate != 0) return true;
+  }
+  return false;
 }
 
 bool SideTrials::is_undecided(Combination sides, std::size_t unit) const {

@@ -44,20 +44,25 @@ class SideTrials {
   /// asked for strictly.
   bool stands(Combination sides, bool strictly) const;
   /// Whether every unit whose event function stays at zero is where it is preferred: nothing asks it to turn
-  /// over.
+  /// over. Not one that moves others there by what does not hold at zero.
   bool keeps(Combination sides, Combination preferred) const;
   /// Whether the event function of a unit stays at zero.
   bool rests(Combination sides, std::size_t unit) const { return direction(sides, unit) == 0; }
+  /// Whether it is zero exactly and stays so, but moves where another unit stands on its other side.
+  bool is_flat(Combination sides, std::size_t unit) const;
   /// Whether both sides of the switching surface of a unit lead away from it: then either is a solution.
   bool is_undecided(Combination sides, std::size_t unit) const;
 
   /// Whether a unit is where it switches, whichever of its sides it stands on.
   bool is_at_zero(Combination sides, std::size_t unit) const;
 
-  /// Whether any comparison of a unit turns over where another unit does, at a corner of what it compares:
-  /// not that of what is flat on the one side of the corner, where it does not hold, nor on the other. True
-  /// where it does not follow the other alone.
-  bool turns_at_corner(Combination sides, std::size_t unit, std::size_t corner) const;
+  /// What the comparisons of a unit do where another unit turns over, at a corner of what they compare.
+  struct AtCorner {
+    bool turns = true;                  ///< some hold on one of its sides and not on the other
+    std::vector<std::uint32_t> silent;  ///< the switches that hold on neither: there it is flat, or below
+  };
+  /// The same as without a corner where the unit does not follow the other alone.
+  AtCorner at_corner(Combination sides, std::size_t unit, std::size_t corner) const;
 
   /// Whether the solution crosses the switching surface of a unit, wherever the others stand: nothing holds
   /// it there.
@@ -90,6 +95,7 @@ class SideTrials {
   bool is_off_zero(const Trial& trial, std::size_t unit) const;
   int direction(Combination sides, std::size_t unit) const;
   bool jumps(std::size_t unit) const;
+  bool drives_at_zero(Combination sides, std::size_t unit) const;
 
   const network::Program& program_;
   network::Workspace& workspace_;

@@ -45,6 +45,7 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
       span_(span),
       follows_(program.switches().size(), false),
       rests_(program.switches().size(), false),
+      silent_(program.switches().size(), false),
       lifted_(program.switches().size(), false),
       sides_(program.switch_structure()),
       strongest_(program.switch_structure().members.size()),
@@ -101,7 +102,7 @@ bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
     const bool above = (side.bits >> u & 1U) != 0;
     for (const std::uint32_t s : structure.members[units_[u]])
       workspace_.set_discrete_state(program_.switches()[s].discrete_state,
-                                    above != structure.opposite[s] ? 1 : 0);
+                                    above != structure.opposite[s] && !silent_[s] ? 1 : 0);
   }
   side.event_functions.resize(program_.switches().size());
   const std::size_t most = 2 * followers_.size() + 2;
@@ -180,15 +181,18 @@ bool SlidingMode::settle_sides(double t, std::span<const double> x) {
   return std::all_of(sides_.begin(), sides_.end(), [&](SlideSide& side) { return settle(side, t, x); });
 }
 
-bool SlidingMode::begin(const std::vector<std::uint32_t>& units, double t, std::span<const double> x) {
+bool SlidingMode::begin(const std::vector<std::uint32_t>& units, const std::vector<std::uint32_t>& silent,
+                        double t, std::span<const double> x) {
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
-  const Kept kept{units_, shares_, rests_};
+  const Kept kept{units_, shares_, rests_, silent_};
+  Kept going = kept;
+  for (const std::uint32_t s : silent) going.silent[s] = true;
   std::vector<std::uint32_t> all = units_;
   all.insert(all.end(), units.begin(), units.end());
-  bool begins = all.size() <= kMostUnits && make(all, kept, t, x) && attracts(t, x);
+  bool begins = all.size() <= kMostUnits && make(all, going, t, x) && attracts(t, x);
   if (!begins && lift_followers()) {
     workspace_.load_discrete_states(before);
-    begins = make(std::move(all), kept, t, x) && attracts(t, x);
+    begins = make(std::move(all), going, t, x) && attracts(t, x);
   }
   if (begins) {
     load_base();
@@ -209,13 +213,14 @@ bool SlidingMode::make(std::vector<std::uint32_t> units, const Kept& kept, doubl
   units_ = std::move(units);
   parts_ = independent_.parts_of(units_);
   rests_ = kept.rests;
+  silent_ = kept.silent;
   find_followers();
   sides_.make(units_, followers_.empty() ? std::vector<std::vector<std::size_t>>() : parts_);
   base_.clear();
   for (std::uint32_t s = 0; s < follows_.size(); ++s) {
     const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
     if (holds(s) || follows_[s])
-      base_.emplace_back(discrete_state, workspace_.discrete_state(discrete_state));
+      base_.emplace_back(discrete_state, silent_[s] ? 0 : workspace_.discrete_state(discrete_state));
   }
   for (const std::uint32_t segment : segments_)
     base_.emplace_back(segment, workspace_.discrete_state(segment));
@@ -282,6 +287,7 @@ void SlidingMode::end() {
   segments_.clear();
   std::fill(follows_.begin(), follows_.end(), false);
   std::fill(rests_.begin(), rests_.end(), false);
+  std::fill(silent_.begin(), silent_.end(), false);
   std::fill(lifted_.begin(), lifted_.end(), false);
   sides_.clear();
   shares_.clear();
@@ -289,7 +295,7 @@ void SlidingMode::end() {
 
 void SlidingMode::keep(const std::vector<std::uint32_t>& kept, double t, std::span<const double> x) {
   if (kept.size() == units_.size()) return;
-  Kept going{kept, {}, rests_};
+  Kept going{kept, {}, rests_, silent_};
   for (const std::uint32_t unit : kept)
     going.shares.push_back(
         shares_[static_cast<std::size_t>(std::find(units_.begin(), units_.end(), unit) - units_.begin())]);

@@ -44,6 +44,8 @@ class SlidingMode {
   /// Whether the event function of a switch stays at zero along with the slide, though it is not slid along.
   bool rests(std::size_t s) const { return rests_[s]; }
   void let_rest(std::size_t s) { rests_[s] = true; }
+  /// Whether a switch slides that holds on neither side: see `begin`.
+  bool is_silent(std::size_t s) const { return silent_[s]; }
   /// It has gone its way.
   void let_go(std::size_t s) { rests_[s] = false; }
   /// The first unit that slides on which a switch depends that follows.
@@ -52,9 +54,11 @@ class SlidingMode {
   const std::vector<std::uint32_t>& followers() const { return followers_; }
 
   /// Begins to slide along the switching surfaces of `units` from (t, x), all other switches where they are:
-  /// beside what slides already, which must be independent of them and slides on. False, with nothing
+  /// beside what slides already, which must be independent of them and slides on. The switches `silent` hold
+  /// on neither side: of what is flat there, neither it nor its negative is above zero. False, with nothing
   /// changed, where no shares keep them there, now and a moment later.
-  bool begin(const std::vector<std::uint32_t>& units, double t, std::span<const double> x);
+  bool begin(const std::vector<std::uint32_t>& units, const std::vector<std::uint32_t>& silent, double t,
+             std::span<const double> x);
   /// Ends; the positions stay what they were to events.
   void end();
   /// Ends but for `kept`, which must be independent of the others, at (t, x).
@@ -135,6 +139,7 @@ class SlidingMode {
     std::vector<std::uint32_t> units;
     std::vector<double> shares;  ///< of each of them
     std::vector<bool> rests;     ///< of each switch
+    std::vector<bool> silent;    ///< the same
   };
   void resume(const Kept& kept, double t, std::span<const double> x);
   bool make(std::vector<std::uint32_t> units, const Kept& kept, double t, std::span<const double> x);
@@ -174,6 +179,7 @@ class SlidingMode {
   std::vector<bool> may_jump_;  ///< of each unit: its event function depends on another that jumps, or see
   std::vector<bool> bends_;     ///< it depends on what follows the unit itself
   std::vector<bool> follows_, rests_;
+  std::vector<bool> silent_;  ///< of each switch: see `begin`
   std::vector<bool> lifted_;  ///< of each switch: while it follows, it holds at zero
   std::vector<std::uint32_t> followers_;
   std::vector<std::uint32_t> segments_;  ///< the discrete states of tables whose ends are followers

@@ -254,10 +254,27 @@ bool SwitchSettling::is_at_level(std::uint32_t unit) const {
   return std::abs(event_functions_[s]) <= near;
 }
 
+/// Adds the corners that have come at this instant and were decided before: where a unit lies at zero behind
+/// one, as what reads a dead zone at its edge, both decide each other.
+void SwitchSettling::add_corners(Units& units) const {
+  const network::SwitchStructure& structure = program_.switch_structure();
+  for (std::uint32_t s = 0; s < announced_.size(); ++s) {
+    const std::uint32_t unit = structure.unit[s];
+    if (!announced_[s] || !decided_[unit] || has_unit(units, unit) || slide_.holds(s) || !is_at_level(unit))
+      continue;
+    const auto& members = structure.members[unit];
+    const bool only_bends = std::none_of(members.begin(), members.end(), [&](std::uint32_t member) {
+      return program_.switches()[member].turning == network::Turning::jumps;
+    });
+    if (only_bends) units.push_back(unit);
+  }
+}
+
 /// Lets the solution decide where the units go that lie on their switching surfaces, those together that are
 /// not independent, with those that slide; what slides beside them slides on. One for which nothing agrees as
 /// long as others have not settled comes after these; where none can be the first, all are decided together.
-void SwitchSettling::decide(const Units& units, double t, std::span<const double> x) {
+void SwitchSettling::decide(Units units, double t, std::span<const double> x) {
+  add_corners(units);
   Units all = units, kept;
   for (const std::uint32_t unit : slide_.units()) {
     if (!has_unit(units, unit)) all.push_back(unit);
@@ -372,9 +389,11 @@ void SwitchSettling::tell_of_open(double t, std::span<const double> x) {
 /// What the last choice of positions tells besides.
 void SwitchSettling::note_choice(double t, std::span<const double> x) {
   for (const std::uint32_t unit : positions_.resting()) {
-    for (const std::uint32_t member : program_.switch_structure().members[unit]) stays_[member] = true;
-    if (has_unit(slid_, unit) && changes_signals(program_, workspace_, unit, t, x))
-      log_.warn_of_halt(unit, t);
+    const auto& members = program_.switch_structure().members[unit];
+    for (const std::uint32_t member : members) stays_[member] = true;
+    // Behind a corner, as in a dead zone, it is at zero exactly: no rounding decides.
+    const bool halts = has_unit(slid_, unit) && !has_unit(positions_.flat(), unit);
+    if (halts && changes_signals(program_, workspace_, unit, t, x)) log_.warn_of_halt(unit, t);
   }
   for (const std::uint32_t unit : positions_.stopped()) {
     event_functions_.keep_at_level(unit);

@@ -86,7 +86,8 @@ class SwitchSettling {
   void add_preferred(std::uint32_t unit, double t, std::vector<double>& preferred) const;
   bool is_at_level(std::uint32_t unit) const;
   void begin(const Units& kept, double t, std::span<const double> x);
-  void decide(const Units& units, double t, std::span<const double> x);
+  void add_corners(Units& units) const;
+  void decide(Units units, double t, std::span<const double> x);
   bool decide_in_order(const Units& units, double t, std::span<const double> x);
   bool decide_together(const Units& units, double t, std::span<const double> x);
   std::vector<std::uint32_t> members_of(const Units& units) const;

@@ -202,7 +202,7 @@ void Switching::record_turns(const std::vector<double>& before, double t) {
     if (!position) continue;
     const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
     if (workspace_.discrete_state(discrete_state) != before[discrete_state] || settling_.last_turn(s) == t ||
-        slide_.holds(s))
+        (slide_.holds(s) && !slide_.is_silent(s)))
       log_.record_turn(s, *position, t);
     else
       settling_.let_touch(s);

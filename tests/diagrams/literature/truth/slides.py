@@ -148,3 +148,36 @@ def three_blocks_in_small_units():
                        lambda y: np.array([y[1], y[2] - y[1], y[3] - y[2]]),
                        [lambda w: 1.2, lambda w: 0.6, lambda w: 0.25])
     return {f"{name} at {t}": motion(t)[k] for t in (1, 3, 5, 10, 20, 25) for k, name in ((2, "v2"), (3, "v3"))}
+
+
+def relay_with_a_dead_zone():
+    """v′ = −1.78 w + 0.3 sin 1.3t with w = ±1 beyond ±0.2 of e = x + v/2. Along an edge e′ = v + v′/2 = 0, so v′ = −2v,
+    for as long as that takes a w of the sign of the edge."""
+    u = lambda t: 0.3 * np.sin(1.3 * t)
+    e = lambda t, y: y[0] + y[1] / 2
+    mean = lambda t, y: (u(t) + 2 * y[1]) / 1.78
+    motion = Motion([-1, 0, 0])
+    side, slides = -1, False
+    while motion.t < 10:
+        if slides:
+            motion.go(lambda t, y: [y[1], -2 * y[1], side * mean(t, y)], 10, [(lambda t, y: side * mean(t, y), -1)])
+            side, slides = 0, False
+        elif side:
+            motion.go(lambda t, y: [y[1], -1.78 * side + u(t), 1], 10, [(lambda t, y: side * e(t, y) - 0.2, -1)])
+            if motion.t < 10:  # in the zone e goes on, or back to the edge
+                v = motion.y[1]
+                slides = side * (v + u(motion.t) / 2) > 0
+                side = side if slides else 0
+        else:
+            hit = motion.go(lambda t, y: [y[1], u(t), 0], 10,
+                            [(lambda t, y: e(t, y) - 0.2, 1), (lambda t, y: -e(t, y) - 0.2, 1)])
+            if hit is None:
+                break
+            side = 1 if hit == 0 else -1
+            beyond = side * (motion.y[1] + (u(motion.t) - 1.78 * side) / 2)
+            slides = beyond < 0
+    out = {}
+    for t in ("4", "8", "10"):
+        x, v, q = motion(float(t))
+        out |= {f"x at {t}": x, f"v at {t}": v, f"q at {t}": q}
+    return out
