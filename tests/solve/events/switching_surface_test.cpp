@@ -497,5 +497,40 @@ TEST(Slide, BeginsAtNoCornerBehindWhichNothingHolds) {
   }
 }
 
+// x slides at 0.4 until a sine moves that level to 0.2, at 0.484 s: then c is up and x falls with 0.7 a
+// second, to 0.2 after 0.2/0.7 s and on with 1.3 a second up. That y slides beside it and reads c changes
+// nothing.
+TEST(Slide, IsLeftWhereItsLevelJumpsBesideAnother) {
+  const Compiled made(R"toml(
+one = { type = "constant" }
+high = { type = "constant", value = 0.4 }
+low = { type = "constant", value = 0.2 }
+u = { type = "time-function", formula = "sin(2*pi*time + 0.1)" }
+e = { type = "electronic-switch", on = "high", off = "low", control = "u", threshold = 0 }
+s = { type = "summer", in = ["x", "-e"] }
+c = { type = "sign", in = "s" }
+x = { type = "integrator", in = ["0.3*one", "-c"] }
+c1 = { type = "sign", in = "y" }
+y = { type = "integrator", in = ["-c1", "-0.2*c"], initial = 0.1 }
+)toml");
+  using enum diagram::IntegrationMethod;
+  for (const auto method : {adams, bdf, rodas}) {
+    const oblique::solve::Run result = run_of(made, {.until = 0.98, .samples = 50, .method = method});
+    const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x"),
+                              y = row_values(result, "y");
+    const double down = 0.5 - 0.05 / std::numbers::pi, arrives = down + 0.2 / 0.7;
+    for (std::size_t row = 0; row < t.size(); ++row) {
+      const double rising = std::min(1.3 * t[row], 0.4), falling = 0.4 - 0.7 * (t[row] - down);
+      // At 0.2 both drive to it, until the sine comes back at 1 − 0.05/π, behind the end.
+      const double truth = t[row] < down ? rising : t[row] < arrives ? falling : 0.2;
+      EXPECT_NEAR(x[row], truth, 1e-6) << t[row];  // a slide may drift by 1e-7
+      if (t[row] > 0.2) {
+        EXPECT_NEAR(y[row], 0, 1e-6) << t[row];
+      }
+    }
+    EXPECT_TRUE(result.warnings.empty());
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

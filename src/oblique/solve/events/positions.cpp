@@ -262,6 +262,10 @@ bool Positions::fits_slide(Combination sliding, Combination sides) {
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
     if (has(sliding, u) || slide_.follows(program_.switch_structure().members[trials_.units()[u]].front()))
       continue;  // placed on each side apart
+    if (const int off = trials_.off_zero(sides, u); off != 0) {
+      if ((off > 0) != has(sides, u)) return false;
+      continue;
+    }
     const double rate = trials_.of_unit(rates, u);
     if (std::abs(rate) <= kNoLaterRate * trials_.largest_rate(u)) {
       for (const std::uint32_t s : program_.switch_structure().members[trials_.units()[u]])

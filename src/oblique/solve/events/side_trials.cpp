@@ -174,14 +174,17 @@ void SideTrials::find_scales() {
   }
 }
 
-bool SideTrials::is_off_zero(const Trial& trial, std::size_t unit) const {
+int SideTrials::off_zero(Combination sides, std::size_t unit) const {
+  if (!trials_[sides]) return 0;
   const std::uint32_t s = program_.switch_structure().members[units_[unit]].front();
-  return std::abs(trial.event_functions[unit]) > std::max(thresholds_[s], SlidingMode::drift());
+  const double event_function = trials_[sides]->event_functions[unit];
+  const bool off = std::abs(event_function) > std::max(thresholds_[s], SlidingMode::drift());
+  return !off ? 0 : event_function > 0 ? 1 : -1;
 }
 
 bool SideTrials::is_at_zero(Combination sides, std::size_t unit) const {
-  const auto &here = trials_[sides], &there = trials_[sides ^ (1U << unit)];
-  return here && there && !is_off_zero(*here, unit) && !is_off_zero(*there, unit);
+  const Combination other = sides ^ (1U << unit);
+  return trials_[sides] && trials_[other] && off_zero(sides, unit) == 0 && off_zero(other, unit) == 0;
 }
 
 SideTrials::AtCorner SideTrials::at_corner(Combination sides, std::size_t unit, std::size_t corner) const {
@@ -215,7 +218,7 @@ SideTrials::AtCorner SideTrials::at_corner(Combination sides, std::size_t unit, 
 int SideTrials::direction(Combination sides, std::size_t unit) const {
   const auto& trial = trials_[sides];
   if (!trial) return 0;
-  if (is_off_zero(*trial, unit)) return trial->event_functions[unit] > 0 ? 1 : -1;
+  if (const int off = off_zero(sides, unit); off != 0) return off;
   return side_of(trial->rates[unit], scales_[unit]);
 }
 

@@ -53,6 +53,8 @@ class SideTrials {
   /// Whether both sides of the switching surface of a unit lead away from it: then either is a solution.
   bool is_undecided(Combination sides, std::size_t unit) const;
 
+  /// On which side of zero a unit lies, 1 or −1, where the others have moved its level away; 0 at zero.
+  int off_zero(Combination sides, std::size_t unit) const;
   /// Whether a unit is where it switches, whichever of its sides it stands on.
   bool is_at_zero(Combination sides, std::size_t unit) const;
 
@@ -92,7 +94,6 @@ class SideTrials {
   void find_scales();
   void find_broken();
   double largest_jump(std::size_t unit, std::size_t with) const;
-  bool is_off_zero(const Trial& trial, std::size_t unit) const;
   int direction(Combination sides, std::size_t unit) const;
   bool jumps(std::size_t unit) const;
   bool drives_at_zero(Combination sides, std::size_t unit) const;
