@@ -356,6 +356,26 @@ set = { k = 1 }
   EXPECT_EQ(result.warnings[0].remedy, "give the switch that slides a hysteresis");
 }
 
+// y comes to the level 0 at 0.714 s, which |x| makes, and x slides at its corner: what y is compared with
+// turns over on one side at once and on the other back.
+TEST(Slide, OfWhatLiesAtItsLevelOnOneSideAloneIsRefused) {
+  const std::string message = message_of<SolveError>([] {
+    run_of(Compiled(R"toml(one = { type = "constant" }
+c = { type = "sign", in = "x" }
+a = { type = "absolute-value", in = "x" }
+d = { type = "comparator", in = ["a", "y"], low = -1 }
+x = { type = "integrator", in = ["-c", "0.3*one"], initial = 0.5 }
+y = { type = "integrator", in = ["-d"], initial = -0.2 }
+)toml"),
+           {.until = 2});
+  });
+  EXPECT_THAT(message, HasSubstr("'d' switches without end at t = 0.714"));
+  EXPECT_THAT(
+      message,
+      HasSubstr("(in > 0, which depends on 'c', which slides along its switching surface)\n  remedy: give "
+                "the switch a hysteresis"));
+}
+
 /// Two relays that hold integrators at zero against 0.3, so that each is up for 0.65 of the time, and what q
 /// integrates of them.
 Compiled two_held(const std::string& together) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/position_effects.h>
 #include <oblique/solve/events/self_consistent.h>
@@ -522,6 +524,21 @@ void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
       if (off <= SlidingMode::drift()) event_functions_.thresholds().give_slack(s, 2 * off);
     }
   }
+}
+
+void SwitchSettling::watch_followers(double t) {
+  constexpr double kPlace = 1e-6;  // [machine unit]
+  if (slide_.followers().empty()) return;
+  const double since = t - std::exchange(followers_turned_, t);
+  followers_turns_ = since * slide_.fastest() < kPlace ? followers_turns_ + 1 : 0;
+  if (followers_turns_ <= kMostTurns) return;
+  const std::uint32_t s = slide_.followers().front();
+  const network::Switch& follower = program_.switches()[s];
+  const std::uint32_t first = program_.switch_structure().members[slide_.followed_by(s)].front();
+  throw log_.endless(follower.block,
+                     fmt::format("{}, which depends on '{}', which slides along its switching surface",
+                                 follower.comparison, program_.switches()[first].block),
+                     t);
 }
 
 void SwitchSettling::let_touch(std::size_t s) {

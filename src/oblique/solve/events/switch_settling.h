@@ -47,6 +47,10 @@ class SwitchSettling {
   bool settle(double t, std::span<const double> x);
   /// The instant is settled; before it these units slid.
   void end(const std::vector<std::uint32_t>& slid);
+  /// What slides is about to be settled anew at t, where it ends or what follows it turns over. Throws
+  /// SolveError where that comes again and again at one place: what follows turns over on one side, and on
+  /// the other back.
+  void watch_followers(double t);
   /// A switch that was announced has not turned over: its event function may touch zero within the errors of
   /// the states until it has left these behind.
   void let_touch(std::size_t s);
@@ -132,6 +136,8 @@ class SwitchSettling {
     long beyond = 0;                 ///< turns after that, within the errors of the states
   };
   std::vector<Unrest> unrest_;
+  double followers_turned_ = 0;  ///< see `watch_followers` [s]
+  int followers_turns_ = 0;      ///< at one place
 };
 
 }  // namespace oblique::solve

@@ -255,10 +255,12 @@ void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<SlidingMode::Doubt> doubts = doubts_of_slide(t, x);
   loop_jumps_.note(t, x);
   each_due([this](std::uint32_t state, double position) { loop_jumps_.expect(state, position); });
-  if (location_.slide_changes())
+  if (location_.slide_changes()) {
+    settling_.watch_followers(t);
     settling_.begin();
-  else
+  } else {
     settling_.begin_beside_slides(t, x);
+  }
   event_functions_.evaluate(t, x, location_.announced());
   settling_.begin_instant();
   location_.withdraw_early(t);
