@@ -30,7 +30,8 @@ Bends::Bends(const network::Program& program, network::Workspace& workspace, dou
       first_rates_(program.switches().size()),
       event_functions_(program.switches().size()),
       derivatives_(program.n_states()),
-      moved_(program.n_states()) {}
+      moved_(program.n_states()),
+      probe_(program, workspace, span) {}
 
 void Bends::clear() {
   positions_.clear();
@@ -52,9 +53,15 @@ std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here
   resting_.clear();
   here.derivatives(derivatives_.data());
   const double fastest = fastest_of(derivatives_, std::numeric_limits<double>::min());
+  probe_.begin(here, 0);
+  {
+    const KeptUnknowns kept(program_, workspace_);
+    probe_.find_noise(t, x);
+  }
   const auto moves = [&](double rate, double rounding) {
     return std::abs(rate) > rounding * fastest && leaves_rounding(rate, span_);
   };
+  const auto is_noise = [&](std::uint32_t s, double rate) { return std::abs(rate) <= probe_.noise(s); };
   const auto go = [&](std::uint32_t s, double rate) {
     workspace_.set_discrete_state(program_.switches()[s].discrete_state, rate > 0 ? 1 : 0);
   };
@@ -62,11 +69,12 @@ std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here
                            [&](std::uint32_t s, double /*event_function*/, double rate) {
                              if (!is_one_[s]) return;
                              first_rates_[s] = rate;
-                             if (moves(rate, kRounding)) go(s, rate);
+                             if (moves(rate, kRounding) && !is_noise(s, rate)) go(s, rate);
                            });
   // What stands still to first order, or is about to turn, goes where it goes a moment later.
   std::vector<bool> at_once(is_one_.size(), false), by_later(is_one_.size(), false);
-  const double step = std::min(kProbe / fastest, kProbe * span_);
+  double step = std::min(kProbe / fastest, kProbe * span_);
+  for (const auto& bend : positions_) step = std::min(step, probe_.straight(bend.first));
   for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step * derivatives_[i];
   {
     const KeptUnknowns kept(program_, workspace_);
@@ -77,6 +85,7 @@ std::optional<network::Evaluation> Bends::follow(const network::Evaluation& here
                                [&](std::uint32_t s, double /*event_function*/, double later_rate) {
                                  if (!is_one_[s]) return;
                                  const double rate = first_rates_[s];
+                                 if (is_noise(s, rate) && is_noise(s, later_rate) && rate != 0) return;
                                  if (moves(rate, kRounding) && !is_about_to_turn(rate, later_rate, step)) {
                                    go(s, rate);
                                    at_once[s] = true;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <oblique/network/program/program.h>
+#include <oblique/solve/events/rate_probe.h>
 #include <oblique/solve/events/sliding_mode.h>
 
 namespace oblique::solve {
@@ -34,8 +35,8 @@ class Bends {
   const std::vector<std::pair<std::uint32_t, double>>& positions() const { return positions_; }
 
   /// Turns them to where their event functions go from (t, x), all others where they are and `here` evaluated
-  /// there; then evaluates the event functions anew. One that stays at zero keeps its position. Nothing where
-  /// a loop has no solution.
+  /// there; then evaluates the event functions anew. One that stays at zero keeps its position, and so does
+  /// one whose rate is what rounding makes of something fast. Nothing where a loop has no solution.
   std::optional<network::Evaluation> follow(const network::Evaluation& here, double t,
                                             std::span<const double> x, std::vector<double>& event_functions);
   /// The units that the last `follow` found to stay at zero.
@@ -57,6 +58,7 @@ class Bends {
   std::vector<std::uint32_t> resting_;
   std::vector<double> first_rates_;  ///< of their event functions
   std::vector<double> event_functions_, derivatives_, moved_;
+  RateProbe probe_;
 };
 
 }  // namespace oblique::solve

@@ -11,7 +11,7 @@
 namespace oblique::solve {
 namespace {
 
-constexpr double kRoundingOfState = 1e-15;  ///< of it
+constexpr double kRoundingOfState = 1e-14;  ///< of it: what some steps of a solver leave
 /// Of the time in which what is fast answers: as long as this it goes straight on.
 constexpr double kStraight = 0.1;
 
@@ -43,9 +43,7 @@ bool RateProbe::look(std::span<const std::uint32_t> switches, double t, std::spa
   const KeptUnknowns kept(program_, workspace_);
   find_noise(t, x);
   step_ = std::min(kProbe / fastest_, kProbe * span_);
-  for (const std::uint32_t s : switches) {
-    if (noise_[s] > 0) step_ = std::min(step_, kStraight * kRoundingOfState / noise_[s]);
-  }
+  for (const std::uint32_t s : switches) step_ = std::min(step_, straight(s));
   for (std::size_t i = 0; i < x.size(); ++i) moved_[i] = x[i] + step_ * derivatives_[i];
   const auto later = program_.event_functions(t + step_, moved_.data(), event_functions_.data(), workspace_);
   if (!later) return false;
@@ -54,8 +52,10 @@ bool RateProbe::look(std::span<const std::uint32_t> switches, double t, std::spa
   return true;
 }
 
-/// What the rounding of the states makes of the rates at (t, x): much, where something fast is nearly in
-/// balance.
+double RateProbe::straight(std::size_t s) const {
+  return noise_[s] > 0 ? kStraight * kRoundingOfState / noise_[s] : std::numeric_limits<double>::infinity();
+}
+
 void RateProbe::find_noise(double t, std::span<const double> x) {
   std::fill(noise_.begin(), noise_.end(), 0.0);
   for (std::size_t i = 0; i < x.size(); ++i)

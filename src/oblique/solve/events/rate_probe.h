@@ -36,9 +36,14 @@ class RateProbe {
   /// What has been found.
   ProbedRate operator[](std::size_t s) const { return {rates_[s], later_[s], step_, noise_[s]}; }
 
- private:
+  /// Finds what the rounding of the states makes of the rates from which it has begun at (t, x): much, where
+  /// something fast is nearly in balance.
   void find_noise(double t, std::span<const double> x);
+  double noise(std::size_t s) const { return noise_[s]; }
+  /// For how long what shows so goes straight on [s].
+  double straight(std::size_t s) const;
 
+ private:
   const network::Program& program_;
   network::Workspace& workspace_;
   double span_;
