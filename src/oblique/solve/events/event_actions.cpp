@@ -38,7 +38,12 @@ EventActions::EventActions(const network::Program& program, network::Workspace& 
       came_(program.events().size(), false),
       paces_(program.events().size()),
       uncertain_(program, workspace, slide, log, file),
-      signals_(program.n_signals()) {}
+      signals_(program.n_signals()),
+      movers_(program.events().size()) {
+  for (std::uint32_t s = 0; s < program.switches().size(); ++s) {
+    if (const auto event = program.switches()[s].moves_along) movers_[*event].push_back(s);
+  }
+}
 
 /// Whether events come ever faster at t that know what they go over into: others may follow them.
 bool EventActions::is_any_to_pile_up(double t) const {
@@ -141,12 +146,19 @@ bool EventActions::comes_at_once(std::size_t event, double t, std::span<const do
   return hangs;
 }
 
+/// Whether a table follows what slides: it goes along on each of its sides.
+bool EventActions::is_of_slide(std::size_t event) const {
+  const std::vector<std::uint32_t>& movers = movers_[event];
+  return std::any_of(movers.begin(), movers.end(), [&](std::uint32_t s) { return slide_.follows(s); });
+}
+
 /// Looks at all conditions; the events that have come. While tables are moved along nothing else comes: on
 /// the way to the segment that belongs to it a table gives values that are nobody's.
 std::vector<EventActions::Come> EventActions::look(double t, std::span<const double> x, bool starting) {
   std::vector<Come> tables;
   for (std::size_t e = 0; e < held_.size(); ++e) {
-    if (program_.events()[e].repeats && event_functions_.here().condition(e)) tables.push_back({e, false});
+    if (program_.events()[e].repeats && !is_of_slide(e) && event_functions_.here().condition(e))
+      tables.push_back({e, false});
   }
   if (!tables.empty()) return tables;
   const std::vector<bool> held_before = held_;
@@ -157,7 +169,7 @@ std::vector<EventActions::Come> EventActions::look(double t, std::span<const dou
     const bool at_once = held_[e] && comes_at_once(e, t, x);
     const bool comes =
         held_[e] && (!held_before[e] || event.repeats || at_once) && (!starting || event.at_start);
-    if (comes) found.push_back({e, at_once});
+    if (comes && !(event.repeats && is_of_slide(e))) found.push_back({e, at_once});
   }
   // At a start what was so before it comes first; what follows from that does not rise.
   const auto of_before = [&](const Come& come) { return program_.events()[come.event].before_start; };

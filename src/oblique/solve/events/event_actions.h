@@ -69,6 +69,7 @@ class EventActions {
   };
 
   std::vector<Come> look(double t, std::span<const double> x, bool starting);
+  bool is_of_slide(std::size_t event) const;
   bool is_led_by_what_came(std::size_t s);
   bool comes_at_once(std::size_t event, double t, std::span<const double> x);
   bool is_any_to_pile_up(double t) const;
@@ -96,6 +97,8 @@ class EventActions {
   double piled_up_ = -std::numeric_limits<double>::infinity();  ///< when one last went over into another [s]
   UncertainReadings uncertain_;
   std::vector<double> signals_;
+  std::vector<std::vector<std::uint32_t>>
+      movers_;  ///< of each event: the switches by which tables move along
 };
 
 }  // namespace oblique::solve
