@@ -268,6 +268,7 @@ bool Positions::fits_slide(Combination sliding, Combination sides) {
     }
     const double rate = trials_.of_unit(rates, u);
     if (std::abs(rate) <= kNoLaterRate * trials_.largest_rate(u)) {
+      if (trials_.drives_at_zero(sides, u)) return false;
       for (const std::uint32_t s : program_.switch_structure().members[trials_.units()[u]])
         slide_.let_rest(s);
     } else if ((rate > 0) != has(sides, u)) {

@@ -274,10 +274,10 @@ bool SideTrials::keeps(Combination sides, Combination preferred) const {
   return true;
 }
 
-/// Whether a unit that is at zero exactly, and stays so, moves others by a comparison that would hold there.
 bool SideTrials::drives_at_zero(Combination sides, std::size_t unit) const {
   const auto &here = trials_[sides], &there = trials_[sides ^ (1U << unit)];
   if (!here || !there || here->event_functions[unit] != 0) return false;
+  if (here->rates[unit].rate != 0 || there->rates[unit].rate != 0) return false;
   const network::SwitchStructure& structure = program_.switch_structure();
   const auto& members = structure.members[units_[unit]];
   const bool holds = std::any_of(members.begin(), members.end(), [&](std::uint32_t s) {

@@ -48,6 +48,9 @@ class SideTrials {
   bool keeps(Combination sides, Combination preferred) const;
   /// Whether the event function of a unit stays at zero.
   bool rests(Combination sides, std::size_t unit) const { return direction(sides, unit) == 0; }
+  /// Whether a unit that is at zero exactly, and stays so on either of its sides, moves others by a
+  /// comparison that would hold there.
+  bool drives_at_zero(Combination sides, std::size_t unit) const;
   /// Whether it is zero exactly and stays so, but moves where another unit stands on its other side.
   bool is_flat(Combination sides, std::size_t unit) const;
   /// Whether both sides of the switching surface of a unit lead away from it: then either is a solution.
@@ -96,7 +99,6 @@ class SideTrials {
   double largest_jump(std::size_t unit, std::size_t with) const;
   int direction(Combination sides, std::size_t unit) const;
   bool jumps(std::size_t unit) const;
-  bool drives_at_zero(Combination sides, std::size_t unit) const;
 
   const network::Program& program_;
   network::Workspace& workspace_;
