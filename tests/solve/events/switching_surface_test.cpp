@@ -553,5 +553,25 @@ y = { type = "integrator", in = ["-1.27*b", "0.5*one", "-0.01*x"], initial = 0.1
   }
 }
 
+// dx/dt = cos(t)/2 − a from the edge of a dead zone, where x slides until π/2 and then falls into it.
+TEST(Slide, BeginsWithTheRunAtACorner) {
+  const Compiled made(R"toml(
+u = { type = "sine-source", frequency = "1 rad/s", phase = "90 deg" }
+x = { type = "integrator", in = ["-a", "0.5*u"], initial = 0.2 }
+a = { type = "comparator", in = "n" }
+n = { type = "dead-zone", in = "x", low = -0.1, high = 0.2 }
+)toml");
+  const oblique::solve::Run result = run_of(made, {.until = 2.5, .samples = 26});
+  const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x"),
+                            a = row_values(result, "a");
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    const bool slides = t[row] < std::numbers::pi / 2;
+    EXPECT_NEAR(x[row], slides ? 0.2 : 0.2 + (std::sin(t[row]) - 1) / 2, 1e-6)
+        << t[row];  // it may drift by 1e-7
+    EXPECT_NEAR(a[row], slides ? std::cos(t[row]) / 2 : 0, 1e-5) << t[row];
+  }
+  EXPECT_TRUE(result.warnings.empty());
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -178,9 +178,11 @@ void Positions::lower_at_zero(double t, std::span<const double> x) {
   std::vector<double> event_functions(program_.switches().size());
   if (!program_.event_functions(t, x.data(), event_functions.data(), workspace_)) return;
   const std::vector<double> none(event_functions.size(), 0.0);
-  for (const std::uint32_t unit : trials_.units()) {
+  for (std::size_t u = 0; u < trials_.units().size(); ++u) {
+    const std::uint32_t unit = trials_.units()[u];
     const std::uint32_t s = program_.switch_structure().members[unit].front();
-    if (slide_.rests(s) && event_functions[s] == 0) prefer_where_nothing_changes(unit, none, t, x);
+    if (trials_.any_jumps(1U << u) && slide_.rests(s) && event_functions[s] == 0)
+      prefer_where_nothing_changes(unit, none, t, x);
   }
 }
 
