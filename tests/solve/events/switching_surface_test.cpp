@@ -425,78 +425,6 @@ one = { type = "constant", value = 1 }
   }
 }
 
-// x slides along 1 − t/2, and the dead zone that it comes into at t = 1.2 gives 0, which is not above zero;
-// nor is that below, until x leaves it again at t = 2.8.
-TEST(Slide, LeavesNothingHoldingThatComesToZeroBesideIt) {
-  const Compiled made(R"toml(
-u = { type = "ramp", slope = -0.5, initial = 1 }
-d = { type = "summer", in = ["u", "-x"] }
-r = { type = "sign", in = "d" }
-x = { type = "integrator", in = "r", initial = 1 }
-z = { type = "dead-zone", in = "x", low = -0.4, high = 0.4 }
-a = { type = "comparator", in = "z" }
-b = { type = "comparator", in = "-z" }
-p = { type = "integrator", in = "a" }
-q = { type = "integrator", in = "b" }
-)toml");
-  const oblique::solve::Run result = run_of(made, {.until = 4, .samples = 41});
-  const std::vector<double> t = row_values(result, "t"), a = row_values(result, "a"),
-                            b = row_values(result, "b");
-  for (std::size_t row = 0; row < t.size(); ++row) {
-    if (std::abs(t[row] - 1.2) > 1e-6) {
-      EXPECT_EQ(a[row], t[row] < 1.2 ? 1 : 0) << t[row];
-    }
-    if (std::abs(t[row] - 2.8) > 1e-6) {
-      EXPECT_EQ(b[row], t[row] > 2.8 ? 1 : 0) << t[row];
-    }
-  }
-  EXPECT_NEAR(row_values(result, "p").back(), 1.2, 1e-6);  // a slide may drift by 1e-7
-  EXPECT_NEAR(row_values(result, "q").back(), 1.2, 1e-6);
-}
-
-// dx/dt = 0.3 − a from −0.5, or its mirror image. What a compares is zero from the first edge that x comes to
-// on, where it does not hold: x goes on, to the other edge if there is one, and slides there.
-TEST(Slide, BeginsAtNoCornerBehindWhichNothingHolds) {
-  struct Flat {
-    const char* blocks;
-    double sign, x, a;  ///< whether it comes from below; at the end
-  };
-  const Flat flats[] = {
-      {"m = { type = \"dead-zone\", in = \"x\", low = -0.2, high = 0.2 }\na = { type = \"comparator\", in = "
-       "\"m\" }",
-       1, 0.2, 0.3},
-      {"m = { type = \"minimum\", x = \"x\", y = \"o\" }\na = { type = \"comparator\", in = \"m\" }", 1, 0.7,
-       0},
-      {"m = { type = \"absolute-value\", in = \"x\" }\na = { type = \"comparator\", in = [\"x\", \"-m\"] }",
-       1, 0.7, 0},
-      {"m = { type = \"limiter\", in = \"x\", low = -1, high = 0.2 }\na = { type = \"electronic-switch\", on "
-       "= "
-       "\"one\", control = \"m\", threshold = 0.2 }",
-       1, 0.7, 0},
-      {"m = { type = \"dead-zone\", in = \"x\", low = -0.2, high = 0.2 }\na = { type = \"comparator\", in = "
-       "\"-m\" }",
-       -1, -0.2, 0.3},
-      {"m = { type = \"limiter\", in = \"x\", low = 0, high = 1 }\na = { type = \"comparator\", in = \"-m\" "
-       "}",
-       -1, -0.7, 0},
-      {"m = { type = \"diode\", in = \"x\" }\na = { type = \"comparator\", in = \"-m\" }", -1, -0.7, 0},
-  };
-  using enum diagram::IntegrationMethod;
-  for (const Flat& flat : flats) {
-    for (const auto method : {adams, bdf, rodas}) {
-      const Compiled made(fmt::format(
-          "one = {{ type = \"constant\" }}\no = {{ type = \"constant\", value = 0 }}\n{0}\nx = {{ type = "
-          "\"integrator\", in = [\"{1}*one\", \"{2}*a\"], initial = {3} }}\n",
-          flat.blocks, 0.3 * flat.sign, -flat.sign, -0.5 * flat.sign));
-      const oblique::solve::Run result = run_of(made, {.until = 4, .samples = 5, .method = method});
-      EXPECT_NEAR(row_values(result, "x").back(), flat.x, 1e-6) << flat.blocks;  // a slide may drift by 1e-7
-      EXPECT_NEAR(row_values(result, "a").back(), flat.a, 1e-6) << flat.blocks;
-      EXPECT_TRUE(result.warnings.empty()) << flat.blocks;
-      EXPECT_LE(result.event_count, 5) << flat.blocks;
-    }
-  }
-}
-
 // x slides at 0.4 until a sine moves that level to 0.2, at 0.484 s: then c is up and x falls with 0.7 a
 // second, to 0.2 after 0.2/0.7 s and on with 1.3 a second up. That y slides beside it and reads c changes
 // nothing.
@@ -530,47 +458,6 @@ y = { type = "integrator", in = ["-c1", "-0.2*c"], initial = 0.1 }
     }
     EXPECT_TRUE(result.warnings.empty());
   }
-}
-
-// x comes to the edge of its dead zone at t = 1/7 and slides there, with a up for 0.7 of the time, though y,
-// which depends on it, slides already: within the zone a does not hold.
-TEST(Slide, BeginsAtACornerBesideAnother) {
-  const Compiled made(R"toml(
-one = { type = "constant" }
-m = { type = "dead-zone", in = "x", low = -0.1, high = 0.1 }
-a = { type = "comparator", in = "m" }
-x = { type = "integrator", in = ["-a", "0.7*one"] }
-b = { type = "comparator", in = "y" }
-y = { type = "integrator", in = ["-1.27*b", "0.5*one", "-0.01*x"], initial = 0.1 }
-)toml");
-  using enum diagram::IntegrationMethod;
-  for (const auto method : {adams, bdf, rodas}) {
-    const oblique::solve::Run result = run_of(made, {.until = 3, .samples = 7, .method = method});
-    EXPECT_NEAR(row_values(result, "x").back(), 0.1, 1e-6);  // a slide may drift by 1e-7
-    EXPECT_NEAR(row_values(result, "a").back(), 0.7, 1e-6);
-    EXPECT_NEAR(row_values(result, "y").back(), 0, 1e-6);
-    EXPECT_NEAR(row_values(result, "b").back(), 0.499 / 1.27, 1e-6);
-  }
-}
-
-// dx/dt = cos(t)/2 − a from the edge of a dead zone, where x slides until π/2 and then falls into it.
-TEST(Slide, BeginsWithTheRunAtACorner) {
-  const Compiled made(R"toml(
-u = { type = "sine-source", frequency = "1 rad/s", phase = "90 deg" }
-x = { type = "integrator", in = ["-a", "0.5*u"], initial = 0.2 }
-a = { type = "comparator", in = "n" }
-n = { type = "dead-zone", in = "x", low = -0.1, high = 0.2 }
-)toml");
-  const oblique::solve::Run result = run_of(made, {.until = 2.5, .samples = 26});
-  const std::vector<double> t = row_values(result, "t"), x = row_values(result, "x"),
-                            a = row_values(result, "a");
-  for (std::size_t row = 0; row < t.size(); ++row) {
-    const bool slides = t[row] < std::numbers::pi / 2;
-    EXPECT_NEAR(x[row], slides ? 0.2 : 0.2 + (std::sin(t[row]) - 1) / 2, 1e-6)
-        << t[row];  // it may drift by 1e-7
-    EXPECT_NEAR(a[row], slides ? std::cos(t[row]) / 2 : 0, 1e-5) << t[row];
-  }
-  EXPECT_TRUE(result.warnings.empty());
 }
 
 }  // namespace

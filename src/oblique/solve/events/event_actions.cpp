@@ -168,8 +168,8 @@ std::vector<EventActions::Come> EventActions::look(double t, std::span<const dou
     const network::Event& event = program_.events()[e];
     const bool at_once = held_[e] && comes_at_once(e, t, x);
     const bool comes =
-        held_[e] && (!held_before[e] || event.repeats || at_once) && (!starting || event.at_start);
-    if (comes && !(event.repeats && is_of_slide(e))) found.push_back({e, at_once});
+        held_[e] && !event.repeats && (!held_before[e] || at_once) && (!starting || event.at_start);
+    if (comes) found.push_back({e, at_once});
   }
   // At a start what was so before it comes first; what follows from that does not rise.
   const auto of_before = [&](const Come& come) { return program_.events()[come.event].before_start; };
