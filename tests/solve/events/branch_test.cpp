@@ -80,6 +80,37 @@ z = { type = "logarithmic-amplifier", in = ["-1.7*z", "u"], saturation = 0.1875,
   }
 }
 
+// y = 0.85 asinh((u + y/2)/0.15625) + 1.7 sign y, which jumps where (u + y/2)/0.15625 = √(2.72² − 1): by
+// hand. However fast u goes, through both branches within a step, each ends in time. (From one place to the
+// next the search for a solution led to the other, and the sign turned over up to 6e-4 s too early, or
+// without end.)
+TEST(Branch, OfAFastInputEndsInTime) {
+  const double bend = std::sqrt(2.72 * 2.72 - 1);
+  const double end = 0.5 * (0.85 * std::asinh(bend) + 1.7) - 0.15625 * bend;
+  for (const double amplitude : {1e2, 1e3, 1e4, 1e5, 1e6}) {
+    const Compiled made(fmt::format(R"toml(x = {{ type = "integrator", in = "-v", initial = -{:.17g} }}
+v = {{ type = "integrator", in = "x" }}
+edge = {{ type = "comparator", in = "v" }}
+y = {{ type = "summer", in = ["-1.7*log", "1.7*side"] }}
+log = {{ type = "logarithmic-amplifier", in = ["x", "0.5*y"], saturation = 0.078125, thermal = 0.5, pair = 1 }}
+side = {{ type = "sign", in = "y" }}
+)toml",
+                                    amplitude));
+    for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
+                              diagram::IntegrationMethod::rodas}) {
+      const auto result = run_of(made, {.until = 7, .tolerance = 1e-9, .method = method});
+      std::vector<double> times;
+      for (const EventRecord& event : result.events) {
+        if (event.what.starts_with("jumps where its branch ends: y from ")) times.push_back(event.time);
+      }
+      ASSERT_EQ(times.size(), 2U) << amplitude;
+      // Found to 1e-10 of the run; as much again for the error of x, of which the slope is the amplitude.
+      EXPECT_NEAR(times[0], std::numbers::pi / 2 + std::asin(end / amplitude), 2e-9) << amplitude;
+      EXPECT_NEAR(times[1], 3 * std::numbers::pi / 2 + std::asin(end / amplitude), 2e-8) << amplitude;
+    }
+  }
+}
+
 // z = (3.81 z − 0.80 u)² by the quadratic formula, from 0 on to where its two solutions meet at t
 // = 2.0355: however far the rows lie apart it is the smaller one. (A step was read from its end, where the
 // way back to its beginning led to the greater.)

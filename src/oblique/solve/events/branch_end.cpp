@@ -80,6 +80,7 @@ BranchWatch::BranchWatch(const network::Program& program, network::Workspace& wo
       span_(options.until - begin),
       apart_(span_ / std::max(kFewestPlaces, options.samples - 1)),
       resolution_(1e-10 * span_),
+      stood_(program.unknowns().size()),
       judged_(program.loops().size()) {
   for (std::size_t loop = 0; loop < program.loops().size(); ++loop) {
     told_.push_back(!is_judged(program, loop));
@@ -93,17 +94,36 @@ std::optional<double> BranchWatch::find(double from, double to, const Interpolan
   return unseen_ ? search(from, to, apart_, solution) : std::nullopt;
 }
 
+/// Whether the unknowns of loops that are not linear have gone so far from where the search stands that they
+/// may have leapt to another branch, which the search for a solution does not notice where the inputs of the
+/// loop have gone far, too. They are then put back.
+bool BranchWatch::leaps() {
+  constexpr double kFar = 0.25;  // of 1 + |z|: between the branches of a loop lies more, but near their ends
+  bool leapt = false;
+  for (std::size_t loop = 0; loop < program_.loops().size() && !leapt; ++loop)
+    leapt = !program_.loop_is_linear(loop) && change_of(program_, workspace_, loop, stood_) > kFar;
+  for (std::size_t u = 0; leapt && u < stood_.size(); ++u) workspace_.set_unknown(u, stood_[u]);
+  return leapt;
+}
+
 std::optional<double> BranchWatch::search(double from, double to, double longest,
                                           const Interpolant& solution) {
   std::vector<double> states(program_.n_states()), signals(program_.n_signals());
+  const auto has_value = [&](double t) {
+    solution.states_at(t, states);
+    return program_.signals(t, states.data(), signals.data(), workspace_).has_value();
+  };
   double t = from, step = std::min(longest, to - from);
+  bool stands = has_value(from);  // the unknowns may come from elsewhere
   while (t < to) {
     const double target = step < to - t ? t + step : to;
-    solution.states_at(target, states);
-    if (program_.signals(target, states.data(), signals.data(), workspace_)) {
+    for (std::size_t u = 0; u < stood_.size(); ++u) stood_[u] = workspace_.unknown(u);
+    const bool known = has_value(target), leapt = known && stands && leaps();
+    if (known && !leapt) {
+      stands = true;
       t = target;
       step = std::min(2 * step, longest);
-    } else if (workspace_.trouble().failure != network::LoopFailure::lost) {
+    } else if (!leapt && workspace_.trouble().failure != network::LoopFailure::lost) {
       break;  // whoever looks there next says what is wrong
     } else if (target - t <= resolution_) {
       return target;

@@ -81,6 +81,7 @@ class BranchWatch {
 
  private:
   std::optional<double> search(double from, double to, double longest, const Interpolant& solution);
+  bool leaps();
 
   const network::Program& program_;
   network::Workspace& workspace_;
@@ -88,6 +89,7 @@ class BranchWatch {
   double span_, apart_, resolution_;     ///< [s]
   bool any_ = false;                     ///< any loop has branches
   bool unseen_ = false;                  ///< one that no derivative needs
+  std::vector<double> stood_;            ///< the unknowns where `search` stands
   std::vector<bool> told_;               ///< of each loop: there is nothing to tell, or it has been told
   std::vector<Eigen::MatrixXd> judged_;  ///< of each loop: where `look` found its amplifiers at rest
   std::optional<double> tried_;          ///< [s] where the solver was let to start anew
