@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "../../support/runs.h"
@@ -117,6 +118,43 @@ i = { type = "integrator", in = "du" }
                                             {.until = 3});
   EXPECT_TRUE(result.warnings.empty());
   EXPECT_NEAR(row_values(result, "i").back(), 1 - std::sin(3), 1e-7);  // ten tolerances
+}
+
+// x′ = −cos t · sign x slides until cos t = 0, and goes as 1 − sin t to one side from then on. The slide of
+// y, which x moves and which would move x, goes on: nothing held x any more but that another slid as well.
+TEST(Slide, EndsWhereItsSidesDriveApartThoughAnotherGoesOn) {
+  for (const char* drive : {"-p", "-p\", \"0.3*y"}) {
+    const Compiled made(fmt::format(R"toml(
+u = {{ type = "time-function", formula = "cos(time)" }}
+s = {{ type = "sign", in = "x" }}
+p = {{ type = "multiplier", x = "u", y = "s" }}
+x = {{ type = "integrator", in = ["{}"], initial = 0.3 }}
+c = {{ type = "sign", in = "y" }}
+y = {{ type = "integrator", in = ["-3*c", "0.4*x"], initial = -0.2 }}
+)toml",
+                                    drive));
+    const oblique::solve::Run result = run_of(made, {.until = std::numbers::pi, .samples = 11});
+    EXPECT_NEAR(std::abs(row_values(result, "x").back()), 1, 1e-6) << drive;  // as a slide may drift
+    ASSERT_EQ(result.warnings.size(), 1U) << drive;
+    EXPECT_THAT(result.warnings.front().what, ::testing::HasSubstr("both of its sides drive away"));
+  }
+}
+
+// x′ = k (1 + s/2) with s the mixture of a slide, into its limit: both sides drive it there, as slowly as k
+// is. (What drives it was taken for zero within the drift of the slide, and the limit was passed.)
+TEST(Slide, DrivesAnIntegratorNoFurtherThanItsLimitHoweverSlowly) {
+  for (const double k : {1.0, 1e-7, 1e-9, 1e-12}) {
+    const Compiled made(fmt::format(R"toml(
+one = {{ type = "constant" }}
+s = {{ type = "comparator", in = ["-z", "y"], low = -1 }}
+y = {{ type = "integrator", in = ["0.3*one", "-0.2*y"], rate = {0:.17g} }}
+z = {{ type = "integrator", in = "s", rate = {0:.17g}, initial = 0.1 }}
+x = {{ type = "integrator", in = ["one", "0.5*s"], limit = 1.4, rate = {0:.17g} }}
+)toml",
+                                    k));
+    const oblique::solve::Run result = run_of(made, {.until = 2 / k, .samples = 11});
+    EXPECT_NEAR(row_values(result, "x").back(), 1.4, 1e-7) << k;
+  }
 }
 
 }  // namespace

@@ -24,4 +24,12 @@ std::optional<std::vector<double>> shares_of_coupled(SlideSides& sides, std::vec
                                                      std::span<const std::size_t> places, double rate,
                                                      double most);
 
+/// Of the event function of each of these coupled units, how much faster its upper side drives it up than its
+/// lower one, while the shares of the others go along so that theirs stay where they are. Above 0 only where
+/// nothing holds them all, however fast each turns over: the determinant of the negative pushes, of each unit
+/// on each event function, is below 0, and a root of their motion above it. 0 of all where the pushes are
+/// singular, and of one that pushes none or without which the others are not held.
+std::vector<double> drives_apart_of_coupled(SlideSides& sides, std::span<const double> shares,
+                                            std::span<const std::size_t> places);
+
 }  // namespace oblique::solve

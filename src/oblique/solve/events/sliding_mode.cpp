@@ -93,6 +93,26 @@ void SlidingMode::find_followers() {
   }
 }
 
+/// Whether an event function that has this value may be zero but for the drift of the states: what depends on
+/// none, as the drive of an integrator, may be as small.
+bool SlidingMode::is_within_drift(const network::Evaluation& here, std::uint32_t s,
+                                  double event_function) const {
+  constexpr double kRounding = 1e-15;  // of what is compared
+  if (event_function == 0) return true;
+  if (!(std::abs(event_function) <= drift())) return false;
+  std::vector<double> off(program_.n_states(), 0.0), rates(program_.switches().size());
+  here.event_function_rates(off.data(), rates.data());
+  const double still = rates[s];
+  double reach = kRounding * here.compared_size(s);
+  for (std::size_t i = 0; i < off.size() && std::abs(event_function) > reach; ++i) {
+    off[i] = drift();
+    here.event_function_rates(off.data(), rates.data());
+    off[i] = 0;
+    reach += std::abs(rates[s] - still);
+  }
+  return std::abs(event_function) <= reach;
+}
+
 /// Puts the units on a side, and what follows them where its event functions then are. Of one that is at zero
 /// on the switching surface, no further off than the states drift from that, none need hold unless it is
 /// lifted.
@@ -109,14 +129,17 @@ bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
   bool settled = followers_.empty();
   for (std::size_t round = 0; !settled; ++round) {
     if (round > most) return false;
-    if (!program_.event_functions(t, x.data(), side.event_functions.data(), workspace_)) return false;
+    const auto here = program_.event_functions(t, x.data(), side.event_functions.data(), workspace_);
+    if (!here) return false;
     settled = true;
     side.follower_rests.clear();
-    for (const std::uint32_t s : followers_) {
+    for (const std::uint32_t s : followers_)
+      side.follower_rests.push_back(is_within_drift(*here, s, side.event_functions[s]));
+    for (std::size_t f = 0; f < followers_.size(); ++f) {
+      const std::uint32_t s = followers_[f];
       const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-      const bool rests = std::abs(side.event_functions[s]) <= drift();
-      const double position = (rests ? lifted_[s] : side.event_functions[s] > 0) ? 1 : 0;
-      side.follower_rests.push_back(rests);
+      const bool holds = side.follower_rests[f] ? lifted_[s] : side.event_functions[s] > 0;
+      const double position = holds ? 1 : 0;
       settled = settled && workspace_.discrete_state(discrete_state) == position;
       workspace_.set_discrete_state(discrete_state, position);
     }
@@ -353,6 +376,7 @@ bool SlidingMode::evaluate(double t, std::span<const double> x, bool takes_back)
   bool valid = true;
   for (SlideSide& side : sides_) valid = valid && evaluate(side, t, x);
   valid = valid && take_common_rates(t, x) && find_shares(takes_back ? kMostReturn : 0);
+  if (valid) find_drives_of_coupled();
   load_base();
   for (std::size_t u = 0; valid && u < units_.size(); ++u) {
     double& strongest = strongest_[units_[u]];
@@ -388,9 +412,10 @@ SlidingMode::Drives SlidingMode::drives(std::size_t unit) const {
   return {sides_.of_unit(upper->rates, unit), sides_.of_unit(sides_[0].rates, unit)};
 }
 
-/// How much more the upper side of a unit drives up than its lower one; nothing of one that is coupled, or of
-/// which both drive alike: that decides where it goes.
+/// How much more the upper side of a unit drives up than its lower one, the others of one that is coupled
+/// going along; nothing of one of which both drive alike: that decides where it goes.
 double SlidingMode::drive_apart(std::size_t unit) const {
+  if (sides_.is_coupled(unit)) return drives_of_coupled_[unit];
   const Drives sides = drives(unit);
   return std::abs(sides.apart()) > kDrives * sides.stronger() ? sides.apart() : 0;
 }
@@ -438,6 +463,7 @@ bool SlidingMode::comes_back(std::size_t unit, std::size_t state, double t, std:
 SlidingMode::Doubt SlidingMode::doubt(std::size_t unit) const {
   const Drives sides = drives(unit);
   const bool is_let_go = repulsion(unit).value_or(-1) > -kNoDrive;
+  if (is_let_go && sides_.is_coupled(unit)) return Doubt::of_side;
   const bool other_drives = sides.weaker() > kDrives * sides.stronger();
   if (is_let_go && other_drives && !(sides.above < 0) && !(sides.below > 0)) return Doubt::of_side;
   const std::optional<double> firmness = grip(unit);
@@ -467,6 +493,15 @@ bool SlidingMode::find_shares(double most_back) {
   }
   sides_.weigh(shares_);
   return true;
+}
+
+void SlidingMode::find_drives_of_coupled() {
+  drives_of_coupled_.assign(units_.size(), 0.0);
+  for (const std::vector<std::size_t>& part : parts_) {
+    if (!std::any_of(part.begin(), part.end(), [&](std::size_t u) { return sides_.is_coupled(u); })) continue;
+    const std::vector<double> drives = drives_apart_of_coupled(sides_, shares_, part);
+    for (std::size_t k = 0; k < part.size(); ++k) drives_of_coupled_[part[k]] = drives[k];
+  }
 }
 
 /// That of a unit on which no other one acts.

@@ -82,9 +82,9 @@ class SlidingMode {
   // As the last `evaluate` left them:
   /// Of each unit, that of its upper side: outside 0 and 1 where the slide is over.
   const std::vector<double>& shares() const { return shares_; }
-  /// Of a unit that nothing couples, how much more its upper side drives up than its lower one does, over the
-  /// most by which they have ever driven together: above 0 they drive apart, and nothing holds it on the
-  /// switching surface. Nothing of another, or where that tells nothing.
+  /// Of a unit how much more its upper side drives up than its lower one does, while the others of one that
+  /// is coupled stay where they are, over the most by which they have ever driven together: above 0 they
+  /// drive apart, and nothing holds it on the switching surface. Nothing where that tells nothing.
   std::optional<double> repulsion(std::size_t unit) const;
   /// Of a unit that nothing couples and that rests on the one side to which the other drives: whether that is
   /// the upper one.
@@ -147,6 +147,7 @@ class SlidingMode {
   bool lift_followers();
   void find_followers();
   bool settle(SlideSide& side, double t, std::span<const double> x);
+  bool is_within_drift(const network::Evaluation& here, std::uint32_t s, double event_function) const;
   bool move_tables_along(double t, std::span<const double> x, bool& still);
   void load(const SlideSide& side);
   void load_base();
@@ -154,6 +155,7 @@ class SlidingMode {
   bool take_common_rates(double t, std::span<const double> x);
   bool find_shares(double most_back);
   bool find_only_share(std::size_t unit, double most_back);
+  void find_drives_of_coupled();
   /// Of a unit that nothing couples, the rates of its event function on its two sides.
   struct Drives {
     double above = 0, below = 0;
@@ -187,6 +189,7 @@ class SlidingMode {
   SlideSides sides_;
   std::vector<std::pair<std::uint32_t, double>> base_;  ///< positions that events see
   std::vector<double> shares_;
+  std::vector<double> drives_of_coupled_;  ///< of each unit, see `drive_apart`; 0 of one that is not coupled
   // Of each unit of the program the most in all slides of the run:
   std::vector<double> strongest_;  ///< drive together
   std::vector<double> firmest_;    ///< grip
