@@ -157,5 +157,22 @@ x = {{ type = "integrator", in = ["one", "0.5*s"], limit = 1.4, rate = {0:.17g} 
   }
 }
 
+// Once the clock is low, b compares twice what a does, which slides: both would turn over together, by a
+// share of 0.6 of the time. That b stays low is told.
+TEST(Slide, TellsOfWhatWouldTurnOverAlongWithIt) {
+  const Compiled made(R"toml(
+clock = { type = "step", at = 0.5, from = 1, to = 0 }
+a = { type = "comparator", in = "x", low = -1 }
+b = { type = "comparator", in = ["2*x", "0.7*clock"] }
+x = { type = "integrator", in = ["-3*a", "b"], initial = -0.4 }
+)toml");
+  const oblique::solve::Run result = run_of(made, {.until = 1});
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(
+      result.warnings.front().what,
+      "'b' (in > 0) is at zero along with what slides from t = 0.5 s on, and would turn over as often: it "
+      "is taken to stay where it is");
+}
+
 }  // namespace
 }  // namespace oblique::solve

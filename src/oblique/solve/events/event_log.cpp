@@ -63,6 +63,7 @@ void EventLog::record_slides(const std::vector<std::uint32_t>& before,
   }
   warn_of_uncounted(slide, t);
   if (slide.units() != before) warn_of_acting_together(slide, t);
+  if (const auto s = slide.turns_along()) warn_of_turning_along(*s, t);
 }
 
 void EventLog::warn(text::Diagnostic warning) {
@@ -149,6 +150,13 @@ void EventLog::warn_of_acting_together(const SlidingMode& slide, double t) {
                   "of the one fall in with those of the other: they are taken as independent",
                   first_of(units->second).block, t),
       "give the comparisons a hysteresis, so that the diagram says when they turn over");
+}
+
+void EventLog::warn_of_turning_along(std::uint32_t s, double t) {
+  warn_of_unit(
+      program_.switch_structure().unit[s], "is at zero along with what slides",
+      fmt::format(" from t = {:.9g} s on, and would turn over as often: it is taken to stay where it is", t),
+      "give the comparison a hysteresis, or let one comparison decide for both");
 }
 
 void EventLog::warn_of_halt(std::uint32_t unit, double t) {

@@ -77,6 +77,7 @@ class EventLog {
   void warn_of_leaving(std::uint32_t unit, SlidingMode::Doubt doubt, double t);
   void warn_of_uncounted(const SlidingMode& slide, double t);
   void warn_of_acting_together(const SlidingMode& slide, double t);
+  void warn_of_turning_along(std::uint32_t s, double t);
 
   const network::Program& program_;
   const std::string& file_;

@@ -639,6 +639,18 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> SlidingMode::act_together
   return std::nullopt;
 }
 
+std::optional<std::uint32_t> SlidingMode::turns_along() const {
+  for (std::uint32_t s = 0; s < rests_.size(); ++s) {
+    if (!rests_[s] || holds(s) || follows_[s] || program_.switches()[s].turning != network::Turning::jumps)
+      continue;
+    const auto up = [s](const SlideSide& side) { return side.rates[s] > 0; };
+    const auto down = [s](const SlideSide& side) { return side.rates[s] < 0; };
+    if (std::any_of(sides_.begin(), sides_.end(), up) && std::any_of(sides_.begin(), sides_.end(), down))
+      return s;
+  }
+  return std::nullopt;
+}
+
 bool SlidingMode::derivatives(double t, const double* x, double* dxdt) {
   if (!evaluate(t, {x, program_.n_states()}, !leaves_)) return false;
   std::fill(dxdt, dxdt + program_.n_states(), 0.0);
