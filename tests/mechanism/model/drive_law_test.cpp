@@ -31,5 +31,20 @@ TEST(DriveClock, FollowsAPeakWhereverItStands) {
   }
 }
 
+// The same way in another unit of time, of a motion that takes years: its intervals are as long.
+TEST(DriveClock, TakesNoLongerForASlowMotion) {
+  for (const double slow : {1.0, 1e4, 1e9, 1e15}) {
+    Mechanism mechanism;
+    Drive drive;
+    drive.law = text::parse_expression(fmt::format("cos(time/{:.17g})", slow));
+    drive.law_scale = 1 / slow;
+    mechanism.drives.push_back(drive);
+    mechanism.motion.until = 100 * slow;
+    DriveClock clock(mechanism);
+    for (const double part : {1.0, 99.0, -20.0, 40.0})
+      EXPECT_NEAR(clock.at(0, part * slow).value, std::sin(part), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace oblique::mechanism

@@ -123,6 +123,13 @@ std::array<double, 2> gauss_kronrod(const Drive& drive, double a, double b) {
   return {kronrod * half, gauss * half};
 }
 
+/// The width of the intervals whose ways are kept [s]: a second, or more where the motion takes hours.
+double panel_of(const Mechanism& mechanism) {
+  constexpr double kMostPanels = 4096;
+  const double least = mechanism.motion.until.value_or(0) / kMostPanels;
+  return least > 1 ? std::exp2(std::ceil(std::log2(least))) : 1;
+}
+
 constexpr int kMostHalvings = 12;
 
 /// Over [a, b], piece by piece from a on; `done` is told the end of each piece and the integral over it.
@@ -159,6 +166,7 @@ DriveState law_at(const Drive& drive, double t) {
 
 DriveClock::DriveClock(const Mechanism& mechanism)
     : mechanism_(mechanism),
+      panel_(panel_of(mechanism)),
       forward_(mechanism.drives.size(), {0}),
       backward_(mechanism.drives.size(), {0}),
       last_(mechanism.drives.size()) {}
@@ -167,8 +175,8 @@ double DriveClock::way(std::size_t d, double t) {
   const Drive& drive = mechanism_.drives[d];
   if (!drive.law) return drive.speed * t;
   std::vector<double>& kept = t < 0 ? backward_[d] : forward_[d];
-  const double panel = t < 0 ? -1 : 1;  // width of the intervals that are kept [s]
-  const auto whole = static_cast<std::size_t>(std::abs(t));
+  const double panel = t < 0 ? -panel_ : panel_;
+  const auto whole = static_cast<std::size_t>(std::abs(t) / panel_);
   Pieces& last = last_[d];
   const auto enter = [&](std::size_t k) {
     if (last.panel == panel * static_cast<double>(k) && !last.all.empty() && last.step == panel) return;

@@ -64,7 +64,8 @@ class DriveClock {
   };
 
   const Mechanism& mechanism_;
-  std::vector<std::vector<double>> forward_;  ///< for each drive its way up to k seconds
+  double panel_;                              ///< width of the intervals whose ways are kept [s]
+  std::vector<std::vector<double>> forward_;  ///< for each drive its way up to k of them
   std::vector<std::vector<double>> backward_;
   std::vector<Pieces> last_;  ///< for each drive, of the panel that was asked for last
 };
