@@ -1,13 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include <oblique/patch/machine_time.h>
 
-#include <fmt/format.h>
-
 #include <oblique/mechanism/motion/motion.h>
-#include <oblique/patch/patch_error.h>
 #include <oblique/patch/range.h>
+#include <oblique/text/expression.h>
 
 namespace oblique::patch {
+namespace {
+
+/// The law at `factor` times the time.
+void stretch(text::Expression& law, double factor) {
+  if (law.kind != text::Expression::Kind::name || law.name != "time") {
+    for (text::Expression& operand : law.operands) stretch(operand, factor);
+    return;
+  }
+  text::Expression product, number;
+  number.number = factor;
+  product.kind = text::Expression::Kind::multiply;
+  product.operands = {number, law};
+  law = product;
+}
+
+}  // namespace
 
 MachineTime::MachineTime(const mechanism::Mechanism& mechanism, const PatchOptions& options)
     : slowed(mechanism) {
@@ -15,13 +29,8 @@ MachineTime::MachineTime(const mechanism::Mechanism& mechanism, const PatchOptio
   factor = mechanism::period(within_range(mechanism)) / *options.period;
   for (mechanism::Drive& drive : slowed.drives) {
     if (drive.law) {
-      throw PatchError(text::Diagnostic{
-          drive.place,
-          fmt::format(
-              "drive '{}' has a speed that varies with time, which no period of the machine can stretch",
-              drive.name),
-          "drives of constant speed",
-          text::Remedy{"leave ", text::Setting{"period"}, " out, or write the law for the machine's time"}});
+      stretch(*drive.law, factor);
+      drive.law_scale *= factor;
     }
     drive.speed *= factor;
   }

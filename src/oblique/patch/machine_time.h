@@ -8,7 +8,7 @@ namespace oblique::patch {
 
 /// A mechanism whose motion takes as long as `PatchOptions::period` asks for.
 struct MachineTime {
-  /// Throws PatchError where a period is asked for and a drive's speed varies with time.
+  /// Throws MechanismError where a period is asked for and the motion has none.
   MachineTime(const mechanism::Mechanism& mechanism, const PatchOptions& options);
 
   mechanism::Mechanism slowed;
