@@ -17,13 +17,15 @@ using Eigen::Vector2d;
 namespace {
 
 double size_of(const Mechanism& mechanism, const GroupEquations& equations) {
-  double size = 0;
+  double size = 0, offset = 0;
   for (const Condition& c : equations.conditions) {
     if (c.kind == Condition::Kind::distance) size = std::max(size, c.value);
     for (const PointRef* point : {&c.a, &c.b}) size = std::max(size, point->local.norm());
-    if (c.line.kind != LineRef::Kind::fixed) size = std::max(size, c.line.point.norm());
+    if (c.line.kind != LineRef::Kind::fixed) offset = std::max(offset, c.line.point.norm());
   }
-  return size > 0 ? size : std::max(mechanism.largest_length(), std::numeric_limits<double>::min());
+  // Of what slides along a line on a body alone the offset says nothing of how far it is from there.
+  if (size == 0) size = mechanism.largest_length();
+  return std::max({size, offset, std::numeric_limits<double>::min()});
 }
 
 }  // namespace
