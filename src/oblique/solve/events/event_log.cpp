@@ -63,7 +63,22 @@ void EventLog::record_slides(const std::vector<std::uint32_t>& before,
   }
   warn_of_uncounted(slide, t);
   if (slide.units() != before) warn_of_acting_together(slide, t);
-  if (const auto s = slide.turns_along()) warn_of_turning_along(*s, t);
+  look_along(slide, t);
+}
+
+/// A switch that turns along may have come to zero in this moment alone, as an integrator leaves its limit:
+/// it is told of where it is still there later.
+void EventLog::look_along(const SlidingMode& slide, double t) {
+  along_since_.resize(program_.switches().size());
+  for (std::uint32_t s = 0; s < along_since_.size(); ++s) {
+    std::optional<double>& since = along_since_[s];
+    if (!slide.turns_along(s))
+      since.reset();
+    else if (!since)
+      since = t;
+    else if (t > *since)
+      warn_of_turning_along(s, *since);
+  }
 }
 
 void EventLog::warn(text::Diagnostic warning) {
@@ -152,10 +167,11 @@ void EventLog::warn_of_acting_together(const SlidingMode& slide, double t) {
       "give the comparisons a hysteresis, so that the diagram says when they turn over");
 }
 
-void EventLog::warn_of_turning_along(std::uint32_t s, double t) {
+void EventLog::warn_of_turning_along(std::uint32_t s, double since) {
   warn_of_unit(
       program_.switch_structure().unit[s], "is at zero along with what slides",
-      fmt::format(" from t = {:.9g} s on, and would turn over as often: it is taken to stay where it is", t),
+      fmt::format(" from t = {:.9g} s on, and would turn over as often: it is taken to stay where it is",
+                  since),
       "give the comparison a hysteresis, or let one comparison decide for both");
 }
 

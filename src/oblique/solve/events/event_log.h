@@ -26,6 +26,10 @@ class EventLog {
   void record_slides(const std::vector<std::uint32_t>& before, const std::vector<SlidingMode::Doubt>& doubts,
                      const SlidingMode& slide, double t);
 
+  /// Looks for what would turn over along with what slides, and does not: a warning where it was so before t,
+  /// too.
+  void look_along(const SlidingMode& slide, double t);
+
   /// A warning; once, however often it comes.
   void warn(text::Diagnostic warning);
   /// Tells that nothing decides where the solution goes.
@@ -77,13 +81,14 @@ class EventLog {
   void warn_of_leaving(std::uint32_t unit, SlidingMode::Doubt doubt, double t);
   void warn_of_uncounted(const SlidingMode& slide, double t);
   void warn_of_acting_together(const SlidingMode& slide, double t);
-  void warn_of_turning_along(std::uint32_t s, double t);
+  void warn_of_turning_along(std::uint32_t s, double since);
 
   const network::Program& program_;
   const std::string& file_;
   std::vector<double> times_;
   std::vector<EventRecord> records_;
   long count_ = 0;
+  std::vector<std::optional<double>> along_since_;  ///< of each switch: since when it would turn along [s]
   std::vector<text::Diagnostic> warnings_;
 };
 

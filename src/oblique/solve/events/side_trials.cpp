@@ -192,14 +192,21 @@ SideTrials::AtCorner SideTrials::at_corner(Combination sides, std::size_t unit, 
   bool above = false, below = false, flat = false;
   for (const bool upper : {false, true}) {
     const Combination there = upper ? sides | 1U << corner : sides & ~(1U << corner);
-    const auto &one = trials_[there], &other = trials_[there ^ (1U << unit)];
-    if (!one || !other) return {};
-    const double a = one->rates[unit].rate * other->rates[corner].rate;
-    const double b = other->rates[unit].rate * one->rates[corner].rate;
-    const double moved = std::max(std::abs(one->rates[corner].rate), std::abs(other->rates[corner].rate));
-    if (!(std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b))) || moved == 0) return {};
-    const Trial& moving = std::abs(one->rates[corner].rate) == moved ? *one : *other;
-    const double slope = moving.rates[unit].rate / moving.rates[corner].rate;
+    if (!trials_[there] || !trials_[there ^ (1U << unit)]) return {};
+    double moved = 0, slope = 0;
+    for (Combination other = 0; other < combinations(); ++other) {
+      if (((other >> corner & 1U) != 0) != upper || !trials_[other]) continue;
+      const double rate = trials_[other]->rates[corner].rate;
+      if (!(std::abs(rate) > moved)) continue;
+      moved = std::abs(rate);
+      slope = trials_[other]->rates[unit].rate / rate;
+    }
+    if (moved == 0) return {};
+    for (Combination other = 0; other < combinations(); ++other) {
+      if (((other >> corner & 1U) != 0) != upper || !trials_[other]) continue;
+      const double own = trials_[other]->rates[unit].rate, with = slope * trials_[other]->rates[corner].rate;
+      if (!(std::abs(own - with) <= kSame * std::max(std::abs(own), std::abs(slope) * moved))) return {};
+    }
     above = above || (upper ? slope > 0 : slope < 0);
     below = below || (upper ? slope < 0 : slope > 0);
     flat = flat || slope == 0;

@@ -639,16 +639,14 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> SlidingMode::act_together
   return std::nullopt;
 }
 
-std::optional<std::uint32_t> SlidingMode::turns_along() const {
-  for (std::uint32_t s = 0; s < rests_.size(); ++s) {
-    if (!rests_[s] || holds(s) || follows_[s] || program_.switches()[s].turning != network::Turning::jumps)
-      continue;
-    const auto up = [s](const SlideSide& side) { return side.rates[s] > 0; };
-    const auto down = [s](const SlideSide& side) { return side.rates[s] < 0; };
-    if (std::any_of(sides_.begin(), sides_.end(), up) && std::any_of(sides_.begin(), sides_.end(), down))
-      return s;
-  }
-  return std::nullopt;
+bool SlidingMode::turns_along(std::uint32_t s) const {
+  constexpr double kStill = 1e-5;  // of what the sides do: ten times the way back of what slides
+  if (!active() || !rests_[s] || holds(s) || follows_[s] ||
+      program_.switches()[s].turning != network::Turning::jumps || !holds_still(s, kStill))
+    return false;
+  const auto up = [s](const SlideSide& side) { return side.rates[s] > 0; };
+  const auto down = [s](const SlideSide& side) { return side.rates[s] < 0; };
+  return std::any_of(sides_.begin(), sides_.end(), up) && std::any_of(sides_.begin(), sides_.end(), down);
 }
 
 bool SlidingMode::derivatives(double t, const double* x, double* dxdt) {

@@ -123,9 +123,9 @@ class SlidingMode {
   /// The first two units that do something to a state together that is not the sum of what each does: with
   /// which shares of the time both are above is not said by their own shares, which are taken as independent.
   std::optional<std::pair<std::uint32_t, std::uint32_t>> act_together() const;
-  /// The first switch that jumps and rests with the slide though its sides move what it compares: as often as
-  /// what slides turns over, so would this one.
-  std::optional<std::uint32_t> turns_along() const;
+  /// Whether a switch jumps and rests with the slide though its sides move what it compares: as often as what
+  /// slides turns over, so would this one.
+  bool turns_along(std::uint32_t s) const;
   /// How far from zero an event function that has been slid along may have drifted [as the event function].
   static double drift() { return 1e-7; }
   /// By how much more than where they bend the event functions of units jump between the sides: those that

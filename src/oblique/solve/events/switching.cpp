@@ -163,6 +163,7 @@ void Switching::put_what_is_due() {
 std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<const double> x) {
   std::vector<SlidingMode::Doubt> doubts(slide_.units().size(), SlidingMode::Doubt::none);
   if (!slide_.active() || !slide_.evaluate(t, x)) return doubts;
+  log_.look_along(slide_, t);
   for (std::size_t u = 0; u < doubts.size(); ++u) doubts[u] = slide_.doubt(u);
   const std::vector<double> before(workspace_.discrete_states().begin(), workspace_.discrete_states().end());
   put_what_is_due();

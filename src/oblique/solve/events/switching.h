@@ -133,7 +133,10 @@ class Switching {
   /// Where the run ends [s]: what would come later is not told of.
   void end_at(double t) { actions_.end_at(t); }
   /// The run has ended at t.
-  void end(double t) { actions_.end(t); }
+  void end(double t) {
+    actions_.end(t);
+    log_.look_along(slide_, t);
+  }
 
   bool slides() const { return slide_.active(); }
   /// Whether what slides mixes the solution of an algebraic loop.
