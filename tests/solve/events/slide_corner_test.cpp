@@ -178,5 +178,16 @@ x = { type = "integrator", in = ["s"], limit = 0.3 }
     EXPECT_THAT(warning.what, ::testing::Not(::testing::HasSubstr("is at zero along"))) << warning.what;
 }
 
+// What drives a limited integrator turns over with the slide of its sign; nothing counts that, though the
+// block has events.
+TEST(Slide, TellsNothingOfADriveThatNoEventReads) {
+  const Compiled made(R"toml(
+c = { type = "sign", in = "x" }
+x = { type = "integrator", in = "-0.3319*c", initial = 0.158, limit = 1.3, set = "zero" }
+zero = { type = "constant", value = 0 }
+)toml");
+  EXPECT_TRUE(run_of(made, {.until = 3}).warnings.empty());
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -247,12 +247,11 @@ void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const 
 /// Tells of switches with events that slide, or follow what does: what these would do is not counted.
 void EventLog::warn_of_uncounted(const SlidingMode& slide, double t) {
   constexpr std::string_view kWhen = " from t = ";
-  const auto tell = [&](std::uint32_t s, std::string_view how, bool also_beside) {
+  const auto tell = [&](std::uint32_t s, std::string_view how) {
     const network::Switch& made = program_.switches()[s];
     const bool acts =
         std::any_of(program_.events().begin(), program_.events().end(), [&](const network::Event& event) {
           if (event.repeats) return false;  // a table goes along on both sides
-          if (also_beside && event.block == made.block) return true;
           const auto read = program_.switch_structure().positions_in(event.condition);
           return std::binary_search(read.begin(), read.end(), s);
         });
@@ -267,11 +266,11 @@ void EventLog::warn_of_uncounted(const SlidingMode& slide, double t) {
       warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
   };
   for (const std::uint32_t unit : slide.units()) {
-    for (const std::uint32_t s : program_.switch_structure().members[unit]) tell(s, "slides", false);
+    for (const std::uint32_t s : program_.switch_structure().members[unit]) tell(s, "slides");
   }
   for (const std::uint32_t s : slide.followers()) {
     if (!slide.is_torn(s)) continue;
-    tell(s, fmt::format("depends on '{}', which slides", first_of(slide.followed_by(s)).block), true);
+    tell(s, fmt::format("depends on '{}', which slides", first_of(slide.followed_by(s)).block));
   }
 }
 
