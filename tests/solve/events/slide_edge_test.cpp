@@ -140,6 +140,21 @@ y = {{ type = "integrator", in = ["-3*c", "0.4*x"], initial = -0.2 }}
   }
 }
 
+// The gain of a relay that slides changes its sign at once: what held it drives it away to one side or the
+// other.
+TEST(Slide, TellsWhereAnEventTurnsItsSidesAround) {
+  const Compiled made(R"toml(
+u = { type = "step", at = 1.1, from = 1, to = -1 }
+s = { type = "sign", in = "-x" }
+p = { type = "multiplier", x = "s", y = "u" }
+x = { type = "integrator", in = "1.4*p", initial = 0.4 }
+)toml");
+  const oblique::solve::Run result = run_of(made, {.until = 2, .samples = 11});
+  EXPECT_NEAR(std::abs(row_values(result, "x").back()), 1.4 * 0.9, 1e-6);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_THAT(result.warnings.front().what, ::testing::HasSubstr("both of its sides drive away"));
+}
+
 // x′ = k (1 + s/2) with s the mixture of a slide, into its limit: both sides drive it there, as slowly as k
 // is. (What drives it was taken for zero within the drift of the slide, and the limit was passed.)
 TEST(Slide, DrivesAnIntegratorNoFurtherThanItsLimitHoweverSlowly) {

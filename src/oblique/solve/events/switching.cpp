@@ -158,8 +158,8 @@ void Switching::put_what_is_due() {
 }
 
 /// What is uncertain of each unit that slides, should it leave its switching surface: with the other switches
-/// as they are, and as those that are due will be. (A limited integrator comes back where what drives it
-/// turns over.)
+/// as they are and as those that are due will be (a limited integrator comes back where what drives it turns
+/// over), or that its sides drive it apart as these will be.
 std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<const double> x) {
   std::vector<SlidingMode::Doubt> doubts(slide_.units().size(), SlidingMode::Doubt::none);
   if (!slide_.active() || !slide_.evaluate(t, x)) return doubts;
@@ -171,7 +171,8 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
   if (!std::equal(before.begin(), before.end(), after.begin(), after.end())) {
     const bool known = slide_.settle_sides(t, x) && slide_.evaluate(t, x);
     for (std::size_t u = 0; known && u < doubts.size(); ++u) {
-      if (slide_.doubt(u) == SlidingMode::Doubt::none) doubts[u] = SlidingMode::Doubt::none;
+      const SlidingMode::Doubt after = slide_.doubt(u);
+      if (after == SlidingMode::Doubt::none || after == SlidingMode::Doubt::of_side) doubts[u] = after;
     }
     workspace_.load_discrete_states(before);
     slide_.settle_sides(t, x);
