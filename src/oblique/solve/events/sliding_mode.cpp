@@ -23,6 +23,9 @@ constexpr double kMostReturn = 1e-6;
 /// switching surface by itself.
 constexpr double kEdgeOfSlide = 2 * kMostReturn;
 
+/// How far beyond 0 and 1 the share of a unit is put that both of its sides drive away alike.
+constexpr double kOver = 1e-3;
+
 /// How far the states are moved to see whether a slide lasts [machine unit].
 constexpr double kSoon = 1e-6;
 
@@ -509,8 +512,11 @@ bool SlidingMode::find_only_share(std::size_t unit, double most_back) {
   const double below = sides_.of_unit(sides_[0].rates, unit);
   const double above = sides_.of_unit(upper_side(unit).rates, unit);
   if (!std::isfinite(below - above)) return false;
-  if (below == above)  // a slide stays as it was where its sides say nothing; none begins there
-    return slides_on_[unit] && std::abs(below) <= kNoDrive * strongest_[units_[unit]];
+  if (below == above) {  // none begins there
+    // A slide stays as it was where its sides say nothing, and is over where both drive away.
+    if (std::abs(below) > kNoDrive * strongest_[units_[unit]]) shares_[unit] = below > 0 ? 1 + kOver : -kOver;
+    return slides_on_[unit];
+  }
   shares_[unit] =
       (below + oblique::solve::way_back(sides_, unit, kReturn / span_, most_back * std::abs(below - above))) /
       (below - above);
