@@ -92,5 +92,29 @@ TEST_F(SharesOfTwo, TakeADriftBack) {
   EXPECT_DOUBLE_EQ(way_back(sides_, 0, 2, 0.005), sign * 0.005);
 }
 
+// y³ − y = 2 sign x: on either side of the slide another branch of the loop, of which the one ends before the
+// other's solution. The mean of x′ is 0, so that sign x = 0.3 sin t, and that of y as many times its root.
+// (The solution on one side was sought from that on the other, and the branch was lost.)
+TEST(Slide, KeepsEachSideOnItsOwnBranchOfALoop) {
+  const Compiled made(R"toml(
+u = { type = "time-function", formula = "0.3*sin(time)" }
+s = { type = "sign", in = "x" }
+x = { type = "integrator", in = ["-s", "u"], initial = 0.5 }
+yy = { type = "squarer", in = "y" }
+yyy = { type = "multiplier", x = "yy", y = "y" }
+y = { type = "servo-amplifier", in = ["yyy", "-y", "-2*s"], initial = 1.5, gain = inf, bandwidth = inf }
+area = { type = "integrator", in = "y" }
+)toml");
+  double begins = 0.5, root = 1.5;
+  for (int k = 0; k < 50; ++k) begins = 0.5 + 0.3 * (1 - std::cos(begins));  // contracts by 0.3 sin t
+  for (int k = 0; k < 50; ++k) root = std::cbrt(root + 2);                   // by 1/(3 y²)
+  for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
+                            diagram::IntegrationMethod::rodas}) {
+    const oblique::solve::Run result = run_of(made, {.until = 3, .samples = 4, .method = method});
+    EXPECT_NEAR(row_values(result, "area").back(), root * (begins + 0.3 * (std::cos(begins) - std::cos(3.0))),
+                1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace oblique::solve

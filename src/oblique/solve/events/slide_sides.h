@@ -31,6 +31,7 @@ struct SlideSide {
       positions;  ///< discrete states, of what slides and what follows
   /// Of each follower: its event function is at zero on the switching surface, where it began or since.
   std::vector<bool> follower_rests;
+  std::vector<double> unknowns;  ///< of algebraic loops, as they were solved last with these positions
   std::vector<double> dxdt;
   std::vector<double> event_functions, rates;  ///< of every switch
   double weight = 0;

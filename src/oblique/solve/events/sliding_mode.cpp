@@ -121,6 +121,7 @@ bool SlidingMode::is_within_drift(const network::Evaluation& here, std::uint32_t
 /// lifted.
 bool SlidingMode::settle(SlideSide& side, double t, std::span<const double> x) {
   const network::SwitchStructure& structure = program_.switch_structure();
+  side.unknowns.clear();  // they may be those of before a jump
   for (std::size_t u = 0; u < units_.size(); ++u) {
     const bool above = (side.bits >> u & 1U) != 0;
     for (const std::uint32_t s : structure.members[units_[u]])
@@ -183,6 +184,7 @@ bool SlidingMode::move_tables_along(double t, std::span<const double> x, bool& s
 void SlidingMode::load(const SlideSide& side) {
   for (const auto& [discrete_state, position] : side.positions)
     workspace_.set_discrete_state(discrete_state, position);
+  for (std::size_t u = 0; u < side.unknowns.size(); ++u) workspace_.set_unknown(u, side.unknowns[u]);
 }
 
 void SlidingMode::load_base() {
@@ -353,6 +355,8 @@ bool SlidingMode::evaluate(SlideSide& side, double t, std::span<const double> x)
     here = program_.event_functions(t, x.data(), side.event_functions.data(), workspace_);
   if (!here) return false;
   here->event_function_rates(side.dxdt.data(), side.rates.data());
+  side.unknowns.resize(program_.unknowns().size());
+  for (std::size_t u = 0; u < side.unknowns.size(); ++u) side.unknowns[u] = workspace_.unknown(u);
   return true;
 }
 
@@ -538,6 +542,8 @@ bool SlidingMode::lasts(double t, std::span<const double> x) {
     for (std::size_t i = 0; i < rates.size(); ++i) rates[i] += side.weight * side.dxdt[i];
   }
   for (const double rate : rates) fastest = std::max(fastest, std::abs(rate));
+  std::vector<std::vector<double>> unknowns;
+  for (const SlideSide& side : sides_) unknowns.push_back(side.unknowns);
   const auto stays = [&](double dt) {
     for (std::size_t i = 0; i < rates.size(); ++i) moved_[i] = x[i] + dt * rates[i];
     const KeptUnknowns kept(program_, workspace_);
@@ -545,6 +551,8 @@ bool SlidingMode::lasts(double t, std::span<const double> x) {
     for (std::size_t u = 0; same && u < now.size(); ++u)
       same = slides_on_[u] || std::abs(shares_[u] - now[u]) < kJump;
     shares_ = now;
+    std::size_t number = 0;
+    for (SlideSide& side : sides_) side.unknowns = unknowns[number++];
     return same;
   };
   // Where no state moves a moment is long beside what the time may drive.
