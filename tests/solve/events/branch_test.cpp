@@ -111,6 +111,30 @@ side = {{ type = "sign", in = "y" }}
   }
 }
 
+// z² + z u = 1 by the quadratic formula, the positive one of its solutions: no branch ends, though z goes a
+// thousandfold from one row to the next. (A row was looked at from the one before, as if it were where the
+// search stood.)
+TEST(Branch, DoesNotEndWhereItGoesFarFromRowToRow) {
+  for (const double amplitude : {1e2, 1e3, 1e5}) {
+    const auto result =
+        run_of(Compiled(fmt::format(R"toml(u = {{ type = "time-function", formula = "{:.17g}*cos(30*time)" }}
+one = {{ type = "constant" }}
+zz = {{ type = "squarer", in = "z" }}
+zu = {{ type = "multiplier", x = "z", y = "u" }}
+z = {{ type = "servo-amplifier", in = ["zz", "zu", "-one"], gain = inf, bandwidth = inf, initial = 1 }}
+)toml",
+                                    amplitude)),
+               {.until = 1, .samples = 31});
+    EXPECT_EQ(result.events.size(), 0U) << amplitude;
+    const auto z = row_values(result, "z"), u = row_values(result, "u");
+    for (std::size_t r = 0; r < z.size(); ++r)
+      EXPECT_NEAR(z[r] * (z[r] + u[r]), 1,
+                  1e-12 + 1e-15 * u[r] * u[r])  // u², of which 1 is left, times rounding
+          << amplitude;
+    for (const double value : z) EXPECT_GT(value, 0) << amplitude;
+  }
+}
+
 // z = (3.81 z − 0.80 u)² by the quadratic formula, from 0 on to where its two solutions meet at t
 // = 2.0355: however far the rows lie apart it is the smaller one. (A step was read from its end, where the
 // way back to its beginning led to the greater.)

@@ -394,8 +394,9 @@ x = { type = "integrator", in = "q" }
       for (std::size_t row = 0; row < t.size(); ++row) {
         EXPECT_NEAR(q[row], std::sqrt(0.2 + (c[row] > 0 ? 1 : below)), 1e-12)
             << jumping << bending << t[row];  // rounding
-        if (std::string_view(jumping).find("pulse") == std::string_view::npos)
+        if (std::string_view(jumping).find("pulse") == std::string_view::npos) {
           EXPECT_EQ(c[row] > 0, u[row] > 0) << jumping << bending << t[row];
+        }
       }
     }
   }

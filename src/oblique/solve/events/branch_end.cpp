@@ -94,6 +94,11 @@ std::optional<double> BranchWatch::find(double from, double to, const Interpolan
   return unseen_ ? search(from, to, apart_, solution) : std::nullopt;
 }
 
+void BranchWatch::stand_at(double t) {
+  reached_ = t;
+  for (std::size_t u = 0; u < stood_.size(); ++u) stood_[u] = workspace_.unknown(u);
+}
+
 /// Whether the unknowns of loops that are not linear have gone so far from where the search stands that they
 /// may have leapt to another branch, which the search for a solution does not notice where the inputs of the
 /// loop have gone far, too. They are then put back.
@@ -115,9 +120,13 @@ std::optional<double> BranchWatch::search(double from, double to, double longest
   };
   double t = from, step = std::min(longest, to - from);
   bool stands = has_value(from);  // the unknowns may come from elsewhere
+  if (!stands && from == reached_) {
+    for (std::size_t u = 0; u < stood_.size(); ++u) workspace_.set_unknown(u, stood_[u]);
+    stands = has_value(from);
+  }
   while (t < to) {
     const double target = step < to - t ? t + step : to;
-    for (std::size_t u = 0; u < stood_.size(); ++u) stood_[u] = workspace_.unknown(u);
+    stand_at(t);
     const bool known = has_value(target), leapt = known && stands && leaps();
     if (known && !leapt) {
       stands = true;
@@ -131,6 +140,7 @@ std::optional<double> BranchWatch::search(double from, double to, double longest
       step = (target - t) / 2;
     }
   }
+  if (t == to) stand_at(to);
   return std::nullopt;
 }
 

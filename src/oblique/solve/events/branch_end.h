@@ -81,6 +81,7 @@ class BranchWatch {
 
  private:
   std::optional<double> search(double from, double to, double longest, const Interpolant& solution);
+  void stand_at(double t);
   bool leaps();
 
   const network::Program& program_;
@@ -90,6 +91,7 @@ class BranchWatch {
   bool any_ = false;                     ///< any loop has branches
   bool unseen_ = false;                  ///< one that no derivative needs
   std::vector<double> stood_;            ///< the unknowns where `search` stands
+  std::optional<double> reached_;        ///< [s] and when
   std::vector<bool> told_;               ///< of each loop: there is nothing to tell, or it has been told
   std::vector<Eigen::MatrixXd> judged_;  ///< of each loop: where `look` found its amplifiers at rest
   std::optional<double> tried_;          ///< [s] where the solver was let to start anew

@@ -41,8 +41,8 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, doub
       distance_(system.size()),
       near_(system.size()),
       told_(system.size()),
-      held_since_(system.size()),
-      stood_(system.size()) {}
+      stood_(system.size()),
+      held_since_(system.size()) {}
 
 void GrowthWatch::restart(double t, std::span<const double> x) {
   if (before_.empty() || std::all_of(growth_.begin(), growth_.end(), [](double g) { return g == 0; }))
