@@ -257,6 +257,7 @@ bool SlidingMode::make(std::vector<std::uint32_t> units, const Kept& kept, doubl
   may_jump_.assign(units_.size(), false);
   slides_on_.assign(units_.size(), false);
   shares_.assign(units_.size(), 0.5);
+  drives_of_coupled_.assign(units_.size(), 0.0);
   bool possible = sides_.are_all() && settle_sides(t, x);
   for (std::size_t u = 0; u < units_.size(); ++u) {
     may_jump_[u] = broken.by_others[u] != 0 || bends_[u];
