@@ -100,13 +100,13 @@ void SlidingMode::find_followers() {
 /// none, as the drive of an integrator, may be as small.
 bool SlidingMode::is_within_drift(const network::Evaluation& here, std::uint32_t s,
                                   double event_function) const {
-  constexpr double kRounding = 1e-15;  // of what is compared
+  constexpr double kLastDigits = 1e-15;  // of what is compared
   if (event_function == 0) return true;
   if (!(std::abs(event_function) <= drift())) return false;
   std::vector<double> off(program_.n_states(), 0.0), rates(program_.switches().size());
   here.event_function_rates(off.data(), rates.data());
   const double still = rates[s];
-  double reach = kRounding * here.compared_size(s);
+  double reach = kLastDigits * here.compared_size(s);
   for (std::size_t i = 0; i < off.size() && std::abs(event_function) > reach; ++i) {
     off[i] = drift();
     here.event_function_rates(off.data(), rates.data());
