@@ -659,6 +659,11 @@ bool SlidingMode::turns_along(std::uint32_t s) const {
   if (!active() || !rests_[s] || holds(s) || follows_[s] ||
       program_.switches()[s].turning != network::Turning::jumps || !holds_still(s, kStill))
     return false;
+  const auto& masks = program_.switch_structure().masks[s];
+  if (std::any_of(masks.begin(), masks.end(), [&](const network::Mask& mask) {
+        return workspace_.discrete_state(mask.discrete_state) == mask.value;
+      }))
+    return false;  // nothing reads it
   const auto up = [s](const SlideSide& side) { return side.rates[s] > 0; };
   const auto down = [s](const SlideSide& side) { return side.rates[s] < 0; };
   return std::any_of(sides_.begin(), sides_.end(), up) && std::any_of(sides_.begin(), sides_.end(), down);
