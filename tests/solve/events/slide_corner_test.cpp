@@ -189,5 +189,17 @@ zero = { type = "constant", value = 0 }
   EXPECT_TRUE(run_of(made, {.until = 3}).warnings.empty());
 }
 
+// What drives w is twice what slides, once the clock is low; as long as w is not at its limit nothing reads
+// its sign.
+TEST(Slide, TellsNothingOfADriveThatIsMaskedByItsLimit) {
+  const Compiled made(R"toml(
+clock = { type = "step", at = 0.5, from = 1, to = 0 }
+a = { type = "sign", in = "x" }
+x = { type = "integrator", in = "-3*a", initial = 0.4 }
+w = { type = "integrator", in = ["2*x", "0.1*clock"], limit = 1 }
+)toml");
+  EXPECT_TRUE(run_of(made, {.until = 1}).warnings.empty());
+}
+
 }  // namespace
 }  // namespace oblique::solve
