@@ -256,5 +256,26 @@ v = 0
   EXPECT_THAT(result.warnings, IsEmpty());
 }
 
+// y follows 2 y³ − 0.52 y = 0.54 a until that folds, where it moves without bound. Truth: t over y by DOP853
+// at 1e-13, as a function of which both are smooth; a is known to a tolerance of 1e-8 there, and moves by
+// 0.27 a second. (Steps crept up to the fold that moved the states by less than rounding does, without end.)
+TEST(Rodas, JumpsWhereABranchFolds) {
+  const Compiled made(R"toml(
+q = { type = "multiplier", x = "y", y = "y" }
+c = { type = "multiplier", x = "q", y = "y" }
+y = { type = "servo-amplifier", in = ["2*c", "-0.54*y", "-0.54*a"], gain = 50, bandwidth = inf, initial = 0.6 }
+one = { type = "constant" }
+other = { type = "integrator", in = ["-0.4*one"], initial = 0.589 }
+a = { type = "integrator", in = ["0.335*b", "-1.076*y", "-0.95*a"], initial = -0.1826 }
+b = { type = "integrator", in = ["-1.355*b"], initial = -0.4 }
+)toml");
+  RunOptions options = by_rodas(0.03);
+  options.max_steps = 1000;  // takes 63
+  const auto result = run(made.program, made.flat, options);
+  ASSERT_EQ(result.events.size(), 1U);
+  EXPECT_NEAR(result.events.front().time, 0.02110242136694, 1e-8 / 0.27);
+  EXPECT_LT(row_values(result, "y").back(), -0.5);
+}
+
 }  // namespace
 }  // namespace oblique::solve

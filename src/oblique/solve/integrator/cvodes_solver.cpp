@@ -95,7 +95,7 @@ double CvodesSolver::step() {
   if (!all_finite(N_VGetArrayPointer(m.states.get()), m.system->size())) {
     throw SolverFailure{SolverFailure::Kind::not_finite, m.t, code};
   }
-  if (m.small_steps.take(before, m.clock, m.length, m.t)) throw m.failure(code);
+  if (m.small_steps.take(before, m.clock, m.length, m.t, true)) throw m.failure(code);
   return m.t;
 }
 

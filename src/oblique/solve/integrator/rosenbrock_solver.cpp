@@ -149,7 +149,7 @@ double RosenbrockSolver::step() {
     if (outcome == Outcome::taken) {
       const double before = clock_;
       take(h);
-      if (small_steps_.take(before, clock_, length_, t_)) throw failure();
+      if (small_steps_.take(before, clock_, length_, t_, has_moved())) throw failure();
       return t_;
     }
     tried = true;
@@ -340,6 +340,14 @@ void RosenbrockSolver::take(double h) {
   statistics_.last_step = h;
   first_ = false;
   knows_linearisation_ = false;
+}
+
+/// Whether any state has moved in the last step by more than a few roundings.
+bool RosenbrockSolver::has_moved() const {
+  for (std::size_t i = 0; i < n_; ++i) {
+    if (std::abs(x_[i] - before_[i]) > 4 * kEpsilon * std::abs(x_[i])) return true;
+  }
+  return false;
 }
 
 /// Where in the last step a time is: from 0 to 1.

@@ -50,6 +50,7 @@ class RosenbrockSolver final : public Solver {
   double unit(std::size_t i) const;
   void take(double h);
   double time_of(double clock) const { return clock >= length_ ? end_ : start_ + clock; }
+  bool has_moved() const;
   double part_of(double t) const;
   SolverFailure failure() const;
 

@@ -71,16 +71,17 @@ inline double time_within(double start, double clock, double end, double length)
 /// Counts steps that cannot move the time any more, being some roundings of the time reached. (The length of
 /// the run is no measure: a fast decay at the head of a long run takes steps that are nothing beside it.)
 /// After so many in a row in which the time since the start has not doubled, as it does in a decay that is
-/// faster than the time shows, a solver gives up.
+/// faster than the time shows, a solver gives up. Steps that cannot move the states either may be longer.
 class SmallSteps {
  public:
   void restart() { *this = SmallSteps(); }
-  /// Another step, from `before` to `clock` of `length` since a start at a time of this magnitude [s]; true
-  /// where that is one too many.
-  bool take(double before, double clock, double length, double time) {
-    constexpr double kSmallest = 8 * std::numeric_limits<double>::epsilon();
+  /// Another step, from `before` to `clock` of `length` since a start at a time of this magnitude [s], which
+  /// moved the states by more than a rounding or not; true where that is one too many.
+  bool take(double before, double clock, double length, double time, bool moved) {
+    constexpr double kRounding = std::numeric_limits<double>::epsilon();
     constexpr int kMost = 20;
-    const bool small = clock - before < kSmallest * std::min(std::abs(time), length) && clock < length;
+    const double smallest = (moved ? 8 : 1000) * kRounding * std::min(std::abs(time), length);
+    const bool small = clock - before < smallest && clock < length;
     if (!small || clock > 2 * since_) {
       since_ = clock;
       count_ = 0;
