@@ -519,7 +519,9 @@ i = { type = "integrator", in = "r" }
     const double t = static_cast<double>(row) / 60;
     EXPECT_NEAR(x[row], t < arrives ? 0.5 - 3 * t : 0, 1e-9) << t;  // straight lines
     EXPECT_NEAR(i[row], t < arrives ? t : arrives - (t - arrives) / 2, 1e-9) << t;
-    if (t > arrives + 0.01) EXPECT_NEAR(r[row], -0.5, 1e-9) << t;
+    if (t > arrives + 0.01) {
+      EXPECT_NEAR(r[row], -0.5, 1e-9) << t;
+    }
   }
 }
 
