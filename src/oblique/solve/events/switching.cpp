@@ -388,7 +388,7 @@ bool Switching::look_at_hidden(double t, const Interpolant& solution) {
 void Switching::look_at_miss(const EventSearch::NearMiss& miss, const Interpolant& solution) {
   const std::uint32_t s = miss.number;
   if (program_.switches()[s].turning != network::Turning::jumps || slide_.holds(s) || slide_.follows(s) ||
-      faint_turns_.is_known(s) ||
+      slide_.rests(s) || faint_turns_.is_known(s) ||
       is_masked(program_.switch_structure().masks[s], workspace_.discrete_states()))
     return;
   std::vector<double> x(program_.n_states());
