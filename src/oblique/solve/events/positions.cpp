@@ -173,7 +173,7 @@ void Positions::prefer_where_nothing_changes(std::uint32_t unit, const std::vect
 }
 
 /// Puts the units that stay at zero exactly along with a slide, as what a dead zone gives, where none of
-/// their comparisons holds.
+/// their comparisons holds: but not where that would end the slide.
 void Positions::lower_at_zero(double t, std::span<const double> x) {
   std::vector<double> event_functions(program_.switches().size());
   if (!program_.event_functions(t, x.data(), event_functions.data(), workspace_)) return;
@@ -181,8 +181,11 @@ void Positions::lower_at_zero(double t, std::span<const double> x) {
   for (std::size_t u = 0; u < trials_.units().size(); ++u) {
     const std::uint32_t unit = trials_.units()[u];
     const std::uint32_t s = program_.switch_structure().members[unit].front();
-    if (trials_.any_jumps(1U << u) && slide_.rests(s) && event_functions[s] == 0)
-      prefer_where_nothing_changes(unit, none, t, x);
+    if (!trials_.any_jumps(1U << u) || !slide_.rests(s) || event_functions[s] != 0) continue;
+    const std::vector<double> positions(workspace_.discrete_states().begin(),
+                                        workspace_.discrete_states().end());
+    prefer_where_nothing_changes(unit, none, t, x);
+    if (!slide_.evaluate(t, x) || !slide_.goes_on()) workspace_.load_discrete_states(positions);
   }
 }
 

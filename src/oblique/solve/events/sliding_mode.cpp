@@ -270,6 +270,11 @@ bool SlidingMode::make(std::vector<std::uint32_t> units, const Kept& kept, doubl
   return possible;
 }
 
+bool SlidingMode::goes_on() const {
+  return std::all_of(shares_.begin(), shares_.end(),
+                     [](double share) { return share >= -kEdgeOfSlide && share <= 1 + kEdgeOfSlide; });
+}
+
 /// Whether the units that are about to slide do, now and a moment later.
 bool SlidingMode::attracts(double t, std::span<const double> x) {
   if (!evaluate(t, x) || largest_jump().value_or(0) > 0) return false;

@@ -82,6 +82,8 @@ class SlidingMode {
   // As the last `evaluate` left them:
   /// Of each unit, that of its upper side: outside 0 and 1 where the slide is over.
   const std::vector<double>& shares() const { return shares_; }
+  /// Whether all of them are between 0 and 1, or hardly beyond.
+  bool goes_on() const;
   /// Of a unit how much more its upper side drives up than its lower one does, while the others of one that
   /// is coupled stay where they are, over the most by which they have ever driven together: above 0 they
   /// drive apart, and nothing holds it on the switching surface. Nothing where that tells nothing.
