@@ -185,7 +185,9 @@ void Positions::lower_at_zero(double t, std::span<const double> x) {
     const std::vector<double> positions(workspace_.discrete_states().begin(),
                                         workspace_.discrete_states().end());
     prefer_where_nothing_changes(unit, none, t, x);
-    if (!slide_.evaluate(t, x) || !slide_.goes_on()) workspace_.load_discrete_states(positions);
+    if (slide_.evaluate(t, x) && slide_.goes_on()) continue;
+    workspace_.load_discrete_states(positions);
+    slide_.evaluate(t, x);
   }
 }
 

@@ -23,6 +23,10 @@ constexpr double kMostReturn = 1e-6;
 /// switching surface by itself.
 constexpr double kEdgeOfSlide = 2 * kMostReturn;
 
+bool is_possible_share(double share) {
+  return share >= -kEdgeOfSlide && share <= 1 + kEdgeOfSlide;
+}
+
 /// How far beyond 0 and 1 the share of a unit is put that both of its sides drive away alike.
 constexpr double kOver = 1e-3;
 
@@ -271,16 +275,14 @@ bool SlidingMode::make(std::vector<std::uint32_t> units, const Kept& kept, doubl
 }
 
 bool SlidingMode::goes_on() const {
-  return std::all_of(shares_.begin(), shares_.end(),
-                     [](double share) { return share >= -kEdgeOfSlide && share <= 1 + kEdgeOfSlide; });
+  return std::all_of(shares_.begin(), shares_.end(), is_possible_share);
 }
 
 /// Whether the units that are about to slide do, now and a moment later.
 bool SlidingMode::attracts(double t, std::span<const double> x) {
   if (!evaluate(t, x) || largest_jump().value_or(0) > 0) return false;
   for (std::size_t u = 0; u < units_.size(); ++u) {
-    const bool is_within = shares_[u] >= -kEdgeOfSlide && shares_[u] <= 1 + kEdgeOfSlide;
-    if (!slides_on_[u] && !is_within) return false;
+    if (!slides_on_[u] && !is_possible_share(shares_[u])) return false;
   }
   if (!lasts(t, x)) return false;
   std::vector<double> mixed(follows_.size());
@@ -662,13 +664,9 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> SlidingMode::act_together
 bool SlidingMode::turns_along(std::uint32_t s) const {
   constexpr double kStill = 1e-5;  // of what the sides do: ten times the way back of what slides
   if (!active() || !rests_[s] || holds(s) || follows_[s] ||
-      program_.switches()[s].turning != network::Turning::jumps || !holds_still(s, kStill))
+      program_.switches()[s].turning != network::Turning::jumps || !holds_still(s, kStill) ||
+      is_masked(program_.switch_structure().masks[s], workspace_.discrete_states()))
     return false;
-  const auto& masks = program_.switch_structure().masks[s];
-  if (std::any_of(masks.begin(), masks.end(), [&](const network::Mask& mask) {
-        return workspace_.discrete_state(mask.discrete_state) == mask.value;
-      }))
-    return false;  // nothing reads it
   const auto up = [s](const SlideSide& side) { return side.rates[s] > 0; };
   const auto down = [s](const SlideSide& side) { return side.rates[s] < 0; };
   return std::any_of(sides_.begin(), sides_.end(), up) && std::any_of(sides_.begin(), sides_.end(), down);
