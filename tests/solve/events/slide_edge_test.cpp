@@ -276,5 +276,43 @@ v2 = { type = "integrator", in = ["-0.7*p2", "-0.134*v2", "-2.703*p2", "2.703*p1
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(ends[k], ends[k + 6], 1e-7) << k;
 }
 
+/// A comparator that ends what moves the integrator i which it compares, and gates a clock for the counter n;
+/// m counts the turns of the comparator itself.
+Compiled gated_clock(const std::string& integrator) {
+  return Compiled(integrator + R"toml(
+one = { type = "constant" }
+on = { type = "comparator", in = ["i"] }
+clock = { type = "pulse-train", period = 0.00317, width = 0.001 }
+gated = { type = "multiplier", in = ["clock", "on"] }
+n = { type = "counter", clock = "gated" }
+m = { type = "counter", clock = "on" }
+)toml");
+}
+
 }  // namespace
+// i comes to zero at 0.5 and rests there: below nothing moves it. The clock has its edges at multiples of
+// 0.00317: 158 of them come before that, and more than 1000 turns of its gate after. The comparator
+// holds from the start, which is no turn.
+TEST(Slide, ThatRestsOnOneSideIsThereToWhatCounts) {
+  const Compiled made = gated_clock(R"toml(i = { type = "integrator", in = ["-on"], initial = 0.5 })toml");
+  for (const auto method : {diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf,
+                            diagram::IntegrationMethod::rodas}) {
+    const auto result = run_of(made, {.until = 10, .samples = 11, .method = method});
+    EXPECT_TRUE(result.warnings.empty()) << result.warnings.front().what;
+    EXPECT_EQ(row_values(result, "n.out").back(), 158);
+    EXPECT_EQ(row_values(result, "m.out").back(), 0);
+  }
+}
+
+// Above nothing moves it: there the comparator has come on once, and of the 1262 edges until 4 s all but 158
+// are counted.
+TEST(Slide, ThatRestsAboveHasTurnedOverOnce) {
+  const Compiled made =
+      gated_clock(R"toml(i = { type = "integrator", in = ["one", "-on"], initial = -0.5 })toml");
+  const auto result = run_of(made, {.until = 4, .samples = 11});
+  EXPECT_TRUE(result.warnings.empty()) << result.warnings.front().what;
+  EXPECT_EQ(row_values(result, "n.out").back(), 1262 - 158);
+  EXPECT_EQ(row_values(result, "m.out").back(), 1);
+}
+
 }  // namespace oblique::solve

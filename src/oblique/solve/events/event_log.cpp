@@ -244,7 +244,8 @@ void EventLog::warn_of_choice(const std::vector<std::uint32_t>& switches, const 
        "'initial'"});
 }
 
-/// Tells of switches with events that slide, or follow what does: what these would do is not counted.
+/// Tells of switches with events that slide, or follow what does: what these would do is not counted. What
+/// rests on one side does nothing.
 void EventLog::warn_of_uncounted(const SlidingMode& slide, double t) {
   constexpr std::string_view kWhen = " from t = ";
   const auto tell = [&](std::uint32_t s, std::string_view how) {
@@ -265,11 +266,16 @@ void EventLog::warn_of_uncounted(const SlidingMode& slide, double t) {
     if (acts && !told)
       warnings_.push_back({{file_, {}}, what, {}, "give the switch that slides a hysteresis"});
   };
+  const auto rests = [&](std::uint32_t unit) {
+    const auto at = std::find(slide.units().begin(), slide.units().end(), unit);
+    return slide.rests_above(static_cast<std::size_t>(at - slide.units().begin())).has_value();
+  };
   for (const std::uint32_t unit : slide.units()) {
+    if (rests(unit)) continue;
     for (const std::uint32_t s : program_.switch_structure().members[unit]) tell(s, "slides");
   }
   for (const std::uint32_t s : slide.followers()) {
-    if (!slide.is_torn(s)) continue;
+    if (!slide.is_torn(s) || rests(slide.followed_by(s))) continue;
     tell(s, fmt::format("depends on '{}', which slides", first_of(slide.followed_by(s)).block));
   }
 }

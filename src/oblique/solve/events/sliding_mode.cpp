@@ -196,19 +196,6 @@ void SlidingMode::load_base() {
     workspace_.set_discrete_state(discrete_state, position);
 }
 
-void SlidingMode::put_at_rest(bool rests) {
-  if (!active()) return;
-  load_base();
-  for (std::size_t u = 0; rests && u < units_.size(); ++u) {
-    const auto above = rests_above(u);
-    for (const std::uint32_t s : program_.switch_structure().members[units_[u]]) {
-      if (above)
-        workspace_.set_discrete_state(program_.switches()[s].discrete_state,
-                                      *above != program_.switch_structure().opposite[s] ? 1 : 0);
-    }
-  }
-}
-
 bool SlidingMode::settle_sides(double t, std::span<const double> x) {
   return std::all_of(sides_.begin(), sides_.end(), [&](SlideSide& side) { return settle(side, t, x); });
 }
@@ -228,6 +215,9 @@ bool SlidingMode::begin(const std::vector<std::uint32_t>& units, const std::vect
   }
   if (begins) {
     load_base();
+    for (std::size_t u = 0; u < units_.size(); ++u) {
+      if (const auto above = rests_above(u)) show(u, *above);
+    }
     slides_on_.assign(units_.size(), true);
     return true;
   }
@@ -235,6 +225,17 @@ bool SlidingMode::begin(const std::vector<std::uint32_t>& units, const std::vect
   workspace_.load_discrete_states(before);
   resume(kept, t, x);
   return false;
+}
+
+void SlidingMode::show(std::size_t unit, bool above) {
+  const auto &upper = upper_side(unit).positions, &lower = sides_[0].positions;
+  for (std::size_t k = 0; k < upper.size(); ++k) {
+    if (upper[k].second == lower[k].second) continue;  // of what this unit does not act on
+    const auto shown = std::find_if(base_.begin(), base_.end(),
+                                    [&](const auto& setting) { return setting.first == upper[k].first; });
+    shown->second = (above ? upper : lower)[k].second;
+  }
+  load_base();
 }
 
 /// Makes the sides of these units and of what follows them, with the shares of those that slide already.

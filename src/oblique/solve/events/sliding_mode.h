@@ -91,11 +91,12 @@ class SlidingMode {
   /// Of a unit that nothing couples and that rests on the one side to which the other drives: whether that is
   /// the upper one.
   std::optional<bool> rests_above(std::size_t unit) const;
+  /// Shows events a unit that nothing couples, and what follows it, on one of its sides: what rests is there
+  /// from when it begins.
+  void show(std::size_t unit, bool above);
   /// Of such a unit whose event function reads this state alone: whether the side on which it rests leads it
   /// back to the switching surface from just beside it, as an amplifier beyond its limit comes back.
   bool comes_back(std::size_t unit, std::size_t state, double t, std::span<const double> x);
-  /// Puts the switches of what rests on one side there, where nothing moves; or back to where they were.
-  void put_at_rest(bool rests);
   /// How fast the side that drives a unit most moves its event function; 0 of one that is coupled.
   double fastest_drive(std::size_t unit) const { return drives(unit).stronger(); }
   /// Whether both sides of a unit that nothing couples drive to the switching surface, and neither hardly.

@@ -527,10 +527,12 @@ void SwitchSettling::end(const std::vector<std::uint32_t>& slid) {
 }
 
 void SwitchSettling::watch_followers(double t) {
-  constexpr double kPlace = 1e-6;  // [machine unit]
+  constexpr double kPlace = 1e-6;   // [machine unit]
+  constexpr double kMoment = 1e-6;  // of the run: turns that come no faster end with it
   if (slide_.followers().empty()) return;
   const double since = t - std::exchange(followers_turned_, t);
-  followers_turns_ = since * slide_.fastest() < kPlace ? followers_turns_ + 1 : 0;
+  const bool same_place = since < kMoment * span_ && since * slide_.fastest() < kPlace;
+  followers_turns_ = same_place ? followers_turns_ + 1 : 0;
   if (followers_turns_ <= kMostTurns) return;
   const std::uint32_t s = slide_.followers().front();
   const network::Switch& follower = program_.switches()[s];

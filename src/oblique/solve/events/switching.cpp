@@ -91,11 +91,8 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (takes) take();
     if (active() && settling_.settle(t, x) && takes) return true;
     if (!first || !rests_within_limits(program_, workspace_, event_functions_, location_.announced(), t, x,
-                                       bring_to_rest)) {
-      slide_.put_at_rest(true);
+                                       bring_to_rest))
       bring_to_rest();
-      slide_.put_at_rest(false);
-    }
     first = false;
     settling_.begin();
     if (takes && starts_move()) return true;
@@ -255,6 +252,11 @@ void Switching::settle_switches(double t, std::span<const double> x) {
 void Switching::settle(double t, std::vector<double>& x) {
   const std::vector<std::uint32_t> slid = slide_.units();
   const std::vector<SlidingMode::Doubt> doubts = doubts_of_slide(t, x);
+  for (std::size_t u = 0; u < doubts.size(); ++u) {
+    // What could as well stay goes where it is driven.
+    const auto above = slide_.rests_above(u);
+    if (above && doubts[u] == SlidingMode::Doubt::of_whether) slide_.show(u, !*above);
+  }
   loop_jumps_.note(t, x);
   each_due([this](std::uint32_t state, double position) { loop_jumps_.expect(state, position); });
   if (location_.slide_changes()) {
