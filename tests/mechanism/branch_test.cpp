@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include "mechanism_text.h"
 #include "random_sixbar.h"
 
 namespace oblique::mechanism {
@@ -228,6 +230,52 @@ P5 = [1.02964, 0.572]
       const double t = motion.times[row];
       const bool is_open = t > motion.events[0].time && t < motion.events[1].time;
       EXPECT_EQ(motion.configurations[row].status, is_open ? Status::open : Status::ok) << t;
+    }
+  }
+}
+
+// A crank and a triad, of which the frame lies so many sizes from the origin. Its branch goes from fold to
+// fold, from 281.66237151° − 360° to −35.06051311° by pseudo-arclength continuation of its constraints.
+class FarFromTheOrigin : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Offsets, FarFromTheOrigin, ::testing::Values(0, 1e4, 1e5, 1e6));
+
+TEST_P(FarFromTheOrigin, ABranchIsTakenUpAgainBehindALimit) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  constexpr double kStart = -0.519488236310132, kSpeed = -31.02429582442193;
+  const auto at = [](double x, double y) {
+    return fmt::format("[{}, {}]\n", x + GetParam(), y - 0.3 * GetParam());
+  };
+  const Mechanism made = mechanism(
+      "title = \"a crank and a triad\"\n[units]\nlength = \"m\"\n[frame]\nF0 = " +
+      at(-0.9541723808652023, 0.2702261441736482) + "F1 = " + at(-1.215096894389717, -0.73350532412951) +
+      "F2 = " + at(0.094321498851059, -1.4346082415540877) + R"toml([bodies]
+crank = { points = ["F0", "B"], length = 0.3725145132460694 }
+t1 = { points = ["U1", "V1"], length = 0.28323476958416677, marks = { W1 = [-0.40090490227555153, 0.3640277433381143] } }
+a1 = { points = ["B", "U1"], length = 0.9645621819910658 }
+b1 = { points = ["F1", "V1"], length = 0.8671856848245377 }
+[slides]
+s1 = { point = "W1", along = ["F1", "F2"], offset = 0.7493033824816246 }
+[drives]
+drv = { turns = "crank", about = "F0", speed = "-31.02429582442193 rad/s", start = "-0.519488236310132 rad" }
+[sketch]
+B = )toml" +
+      at(-0.6308024589670822, 0.08529654624362593) + "U1 = " + at(-0.20278880599653348, -0.7791018085663381) +
+      "V1 = " + at(-0.38781813929381315, -0.9935454620535893) +
+      "W1 = " + at(0.3347250248771161, -0.7133764694044658));
+  for (const int rows : {7, 25, 361}) {
+    const Motion motion = solve(made, rows);
+    EXPECT_TRUE(times_of(motion, Kind::lost).empty());
+    const std::vector<double> limits = times_of(motion, Kind::limit),
+                              returns = times_of(motion, Kind::return_);
+    ASSERT_EQ(limits.size(), 1U);
+    ASSERT_EQ(returns.size(), 1U);
+    // the truths are written to 1e-8°; as far move them coordinates of 1e6 by their rounding, 1e-10
+    const double near = 1e-8 + 2e-14 * GetParam();
+    EXPECT_NEAR((kStart + kSpeed * limits[0]) / kDegree, -35.06051311, near);
+    EXPECT_NEAR((kStart + kSpeed * returns[0]) / kDegree, -78.33762849, near);
+    for (std::size_t row = 0; row < motion.times.size(); ++row) {
+      const bool is_within = motion.times[row] < limits[0] || motion.times[row] > returns[0];
+      EXPECT_EQ(motion.configurations[row].status == Status::ok, is_within) << row;
     }
   }
 }

@@ -19,6 +19,17 @@ constexpr double kMostTurnsBack = 16;
 /// by these steps, up to this far, where its modes are not told apart yet.
 constexpr double kInside = 1e-9, kFartherInside = 10, kFarthestInside = 1e-2;
 
+/// The first of these: farther in where the frame lies more than 100 sizes from the origin, and the rounding
+/// of coordinates hides near the end which mode is which.
+double first_inside(const Mechanism& mechanism) {
+  constexpr double kNear = 100;  // sizes
+  double farthest = 0;
+  for (const Point& point : mechanism.points) {
+    if (point.fixed) farthest = std::max(farthest, point.position.cwiseAbs().maxCoeff());
+  }
+  return kInside * std::max(1.0, farthest / (kNear * mechanism.largest_length()));
+}
+
 /// Stands at time `t` as the straight way of the drives leads there from a place on the branch; false, and
 /// nothing is changed, where a limit lies on it.
 bool enter(BranchWalk& walk, const BranchWalk::Place& from, double t) {
@@ -87,8 +98,8 @@ bool come_back_alone(BranchWalk& walk, Gap& gap, double t) {
     } else if (!gap.reached) {
       gap.reached = first_back(from, to, 0);
     }
-    for (double inside = kInside * scale; inside <= kFarthestInside * scale && is_back(to, inside);
-         inside *= kFartherInside) {
+    for (double inside = first_inside(walk.mechanism) * scale;
+         inside <= kFarthestInside * scale && is_back(to, inside); inside *= kFartherInside) {
       const double within = first_back(*gap.reached, to, inside);
       if (!enter(walk, beyond(within) < 0 ? gap.behind : gap.ahead, within)) continue;
       walk.events.push_back({MotionEvent::Kind::return_, *gap.reached, group});

@@ -188,7 +188,7 @@ void BranchWalk::accept(double t) {
   const double dt = t - time;
   for (std::size_t g = 0; g < courses.size(); ++g) {
     Course& course = courses[g];
-    if (dt != 0) course.derivative = (determinants[g] - course.determinant) / dt;
+    if (std::abs(dt) >= smallest) course.derivative = (determinants[g] - course.determinant) / dt;
     course.determinant = determinants[g];
     course.peak = std::max(course.peak, std::abs(course.determinant));
   }
