@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedAnimation{"NoFolder", "four-bar -o nowhere/x.gif", 2,
                          "nowhere/x.gif: the folder of this file does not exist"},
         RefusedAnimation{"SizeZero", "four-bar --size 0 -o x.svg", 2,
-                         "--size: Value 0 not in range 100 to 4000"},
+                         "--size: 0; expected a whole number from 100 to 4000"},
         RefusedAnimation{"RateZero", "four-bar --rate 0 -o x.gif", 2,
                          "--rate 0; expected a finite number above 0"},
         RefusedAnimation{"RateNoNumber", "four-bar --rate fast -o x.gif", 2, "--rate fast"},

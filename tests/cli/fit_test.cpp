@@ -107,7 +107,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"PathThatIsNoTable", "--path six-bar.toml --free AB", "error: six-bar.toml"},
         Refused{"WithoutFree", "--path circle.csv", "--free is required"},
         Refused{"WithoutPath", "--free AB", "--path is required"},
-        Refused{"NoStarts", "--path circle.csv --free AB --starts 0", "not in range 1 to"},
+        Refused{"NoStarts", "--path circle.csv --free AB --starts 0",
+                "--starts: 0; expected a whole number from 1 to"},
         Refused{"OutputOfAnotherKind", "--path circle.csv --free AB -o new.csv",
                 "cannot write a '.csv' file; expected a name that ends in .toml"}),
     [](const auto& tested) { return tested.param.name; });

@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
             "the mechanism cannot be assembled at rocker = 180°\n"
             "  remedy: `oblique check diagrams/mechanisms/double-rocker.toml` says how far it can go"},
         RefusedPicture{"NoDuration", "animate diagrams/mechanisms/four-bar.toml --duration 0 -o x.svg", 2,
-                       "--duration 0; expected a time above 0"},
+                       "--duration 0; expected a finite time above 0"},
         RefusedPicture{"NotAMechanism", "draw README.md -o x.svg", 2, "README.md:"}),
     [](const auto& tested) { return tested.param.name; });
 

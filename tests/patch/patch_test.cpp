@@ -359,7 +359,7 @@ TEST(Patch, RefusesAGradientServoOfInfiniteGain) {
           options);
     FAIL();
   } catch (const PatchError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("a gradient servo of infinite gain has no time scale"));
+    EXPECT_THAT(error.what(), HasSubstr("a gradient servo of infinite gain or bandwidth has no time scale"));
   }
 }
 

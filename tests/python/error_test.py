@@ -81,6 +81,10 @@ def test_of_numbers(decay):
     refused(ob.RequestError, lambda: decay.run(set=["x.rate", 1]))
     refused(ob.RequestError, lambda: decay.run(set={3: 1}))
     refused(ob.DiagramError, lambda: decay.run(set={"x.leakage": -1}))
+    assert "is too large" in str(refused(ob.RequestError, lambda: decay.run(set={"x.rate": 10**400})))
+    for wrong in ("x", 1, 0.0):
+        assert "True or False" in str(refused(ob.RequestError, lambda: decay.run(settle=wrong)))
+    decay.run(settle=np.bool_(False))
     refused(ob.RequestError, lambda: decay.run(tolerance=-1))
     assert refused(ob.RequestError, lambda: decay.run(method="bfd")).remedy == "did you mean 'bdf'?"
     refused(ob.RequestError, lambda: decay.run(gain=1e4))

@@ -195,6 +195,14 @@ TEST(DocumentMessages, HaveTheRemedyOfWhatTheParserFinds) {
             "  remedy: save the file anew and choose line ends of Unix (LF) or Windows (CR LF)");
 }
 
+TEST(Document, SaysWhatIsOpenOrOutOfPlace) {
+  EXPECT_THAT(document_message("a = { x = 1"),
+              HasSubstr("close the quote, bracket or brace that is open there"));
+  EXPECT_THAT(document_message("a = \"abc\nb = 1\n"), HasSubstr("close the quote on its own line"));
+  EXPECT_THAT(document_message(std::string("a = 1\0\n", 7)), HasSubstr("take the control character out"));
+  EXPECT_THAT(document_message("a = " + std::string(600, '[')), HasSubstr("put fewer brackets or braces"));
+}
+
 TEST(Document, SaysWhatIsTypesetAndWhereACommaIsNoPoint) {
   EXPECT_THAT(document_message("a = 1\nb = \u201cx\u201d\n"), HasSubstr("the quotes here are typeset"));
   EXPECT_THAT(document_message("a = { x = 0,5 }\n"),

@@ -27,7 +27,7 @@ std::optional<double> duration_of(const AnimateRequest& request) {
   const double duration = quantity_option("--duration", request.duration, "s");
   if (duration > 0 && std::isfinite(duration)) return duration;
   throw text::ReadError(
-      text::Diagnostic{{}, fmt::format("--duration {}", request.duration), "a time above 0", {}});
+      text::Diagnostic{{}, fmt::format("--duration {}", request.duration), "a finite time above 0", {}});
 }
 
 [[noreturn]] void refuse_timing(const std::string& what, const std::string& expected,

@@ -10,7 +10,7 @@ void add_solve(CLI::App& app, Chosen& chosen) {
   verb->add_option("MECHANISM", request->mechanism, "mechanism file (oblique-mechanism/1)")->required();
   verb->add_option("--positions", request->positions, "rows over the turn, both ends included")
       ->capture_default_str()
-      ->check(CLI::Range(2, 10'000'000));
+      ->check(whole_number(2, 10'000'000));
   verb->add_option("--until", request->until,
                    "end of the motion, for example \"2 s\" (default: one turn of the first drive)")
       ->type_name("T");
@@ -84,7 +84,7 @@ void add_patch(CLI::App& app, Chosen& chosen) {
   verb->add_option("--segments", request->segments,
                    "of a diagram: straight lines of a function generator, at the most (default: 10)")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000));
+      ->check(whole_number(1, 1000));
   choose(verb, chosen, request, patch_file);
 }
 
@@ -128,7 +128,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       verb->add_option("--monte-carlo", request->runs,
                        "run it N times more, each with tolerances drawn anew; one gain (default 1e6)")
           ->type_name("N")
-          ->check(CLI::Range(1, 10'000'000));
+          ->check(whole_number(1, 10'000'000));
   verb->add_option("--tolerance", request->tolerance,
                    "how far the weights of summers and integrators and the errors of multipliers scatter, "
                    "uniformly on both sides, for example 0.1% (default with --machine: as its profile says)")
@@ -145,7 +145,7 @@ void add_compare(CLI::App& app, Chosen& chosen) {
   verb->add_option("--threads", request->threads,
                    "runs at a time, which changes no result (default: what the processor has)")
       ->type_name("T")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_number(1, 1024));
   CLI::Option* const yield =
       verb->add_option(
               "--yield", request->yield,
@@ -213,7 +213,7 @@ void add_fit(CLI::App& app, Chosen& chosen) {
   verb->add_option("--starts", request->starts,
                    "number of searches, spread over the bounds; 1: from the file only")
       ->capture_default_str()
-      ->check(CLI::Range(1, 10'000));
+      ->check(whole_number(1, 10'000));
   verb->add_option("-o,--output", request->output, "write the fitted mechanism to NEW.toml")
       ->type_name("NEW");
   choose(verb, chosen, request, fit_mechanism);

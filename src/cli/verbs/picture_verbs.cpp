@@ -46,7 +46,7 @@ void add_draw(CLI::App& app, Chosen& chosen) {
   CLI::Option* const positions =
       verb->add_option("--positions", request->positions, "positions over the motion, one over the other")
           ->capture_default_str()
-          ->check(CLI::Range(1, 1000));
+          ->check(whole_number(1, 1000));
   add_looks(verb, *request);
   add_magnify(verb, *request);
   verb->add_option("--plots", request->plots,
@@ -63,7 +63,7 @@ void add_draw(CLI::App& app, Chosen& chosen) {
       verb->add_option("--depth", request->depth,
                        "of a diagram: levels of composite blocks that are shown open (default 0)")
           ->type_name("N")
-          ->check(CLI::Range(0, 100));
+          ->check(whole_number(0, 100));
   verb->add_flag(
           "--layout", request->layout,
           "of a diagram: print where its blocks stand, as the [layout] of its file, in place of a picture")
@@ -85,7 +85,7 @@ void add_animate(CLI::App& app, Chosen& chosen) {
       ->type_name("FILE");
   verb->add_option("--frames", request->frames,
                    "positions computed for a round (default 90, of a GIF what duration and rate make)")
-      ->check(CLI::Range(kLeastFrames, kMostFrames))
+      ->check(whole_number(kLeastFrames, kMostFrames))
       ->type_name("N");
   verb->add_option("--duration", request->duration, "how long a round lasts on the screen (default 4 s)")
       ->type_name("T");
@@ -94,7 +94,7 @@ void add_animate(CLI::App& app, Chosen& chosen) {
                    "--duration)")
       ->type_name("R");
   verb->add_option("--size", request->size, "width on the screen in pixels (default 760)")
-      ->check(CLI::Range(100, 4000))
+      ->check(whole_number(100, 4000))
       ->type_name("W");
   add_magnify(verb, *request);
   add_looks(verb, *request);

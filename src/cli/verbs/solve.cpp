@@ -27,7 +27,7 @@ mechanism::MotionOptions options_of(const SolveRequest& request) {
     options.until = quantity_option("--until", request.until, "s");
     if (!(*options.until > 0 && std::isfinite(*options.until))) {
       throw text::ReadError(
-          text::Diagnostic{{}, fmt::format("--until {}", request.until), "a time above 0", {}});
+          text::Diagnostic{{}, fmt::format("--until {}", request.until), "a finite time above 0", {}});
     }
   }
   if (!request.at_limit.empty()) {

@@ -37,7 +37,7 @@ void add_sweep(CLI::App& app, Chosen& chosen) {
                    "with --latin or --sobol: so many machines; where elements scatter: so many for each "
                    "combination")
       ->type_name("N")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+      ->check(whole_number(1, 1'000'000'000));
   verb->add_flag("--latin", request->latin, "choose the values by a Latin hypercube between their bounds");
   verb->add_flag("--sobol", request->sobol, "choose the values by a Sobol sequence between their bounds");
   verb->add_option("--seed", request->seed, "chooses the random numbers")
@@ -54,7 +54,7 @@ void add_sweep(CLI::App& app, Chosen& chosen) {
   verb->add_option("--jobs", request->jobs,
                    "machines at a time, which changes no result (default: what the processor has)")
       ->type_name("T")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_number(1, 1024));
   verb->add_option(
           "-o,--output", request->output,
           "write a row a machine, the varied values first, to TABLE, which ends in .csv, .npy, .mat or "

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <charconv>
+#include <cstdint>
 #include <memory>
+#include <string>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "arguments.h"
@@ -17,6 +21,18 @@ void choose(CLI::App* verb, Chosen& chosen, const std::shared_ptr<Request>& requ
   verb->callback([&chosen, request, work] {
     chosen.work = [&chosen, request, work] { return work(chosen.session, *request); };
   });
+}
+
+/// A whole number, written in digits, from `least` to `most`.
+inline CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  const auto check = [least, most](const std::string& text) -> std::string {
+    std::uint64_t number = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data(), end, number);
+    if (error == std::errc() && at == end && least <= number && number <= most) return {};
+    return fmt::format("{}; expected a whole number from {} to {}", text, least, most);
+  };
+  return {check, fmt::format("INT in [{} - {}]", least, most), "whole_number"};
 }
 
 /// -o and --columns of a verb that writes a table.

@@ -99,7 +99,7 @@ diagram::Diagram patch_gradient(const mechanism::Mechanism& mechanism, const Pat
   const PatchSetup setup(mechanism, options);
   if (!std::isfinite(options.gain * setup.bandwidth)) {
     throw PatchError(text::Diagnostic{{mechanism.file, {}},
-                                      "a gradient servo of infinite gain has no time scale",
+                                      "a gradient servo of infinite gain or bandwidth has no time scale",
                                       "a finite gain and bandwidth",
                                       {}},
                      PatchError::Kind::request);

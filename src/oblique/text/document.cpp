@@ -176,6 +176,11 @@ std::string remedy_for_words(std::string_view description) {
     return "numbers go up to 1.8e308: write a smaller one, or inf";
   if (says("is not representable in 64 bits"))
     return "write a number as long as this with a point: 1e20 or 1.0";
+  if (says("end-of-file")) return "close the quote, bracket or brace that is open there";
+  if (says("parsing string") && says("control characters"))
+    return "close the quote on its own line, or take the control character out";
+  if (says("saw '\\u00")) return "take the control character out";
+  if (says("maximum nested")) return "put fewer brackets or braces into each other";
   if (says("expected '\\n' after '\\r'"))
     return "save the file anew and choose line ends of Unix (LF) or Windows (CR LF)";
   return "";

@@ -40,6 +40,8 @@ def quantity(name: str, value: Any, unit: str) -> float:
         number = float(value)
     except (TypeError, ValueError):
         raise RequestError(f"{name}={shown(value)} is no number", number_in(unit) + " or a text with a unit") from None
+    except OverflowError:
+        raise RequestError(f"{name}={shown(value)} is too large", number_in(unit, "a number up to 1.8e308")) from None
     if math.isnan(number):
         raise RequestError(f"{name}=nan is not a number", number_in(unit))
     return number
@@ -68,6 +70,13 @@ def count(name: str, value: Any, least: int = 1, most: int = 1_000_000_000) -> i
     if not least <= number <= most:
         raise RequestError(f"{name}={shown(value)}", f"a whole number from {least} to {most}")
     return int(number)
+
+
+def flag(name: str, value: Any) -> bool:
+    """True or False, of Python or NumPy."""
+    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
+        return bool(value)
+    raise RequestError(f"{name}={shown(value)}", "True or False")
 
 
 def choice(name: str, value: Any, known: Sequence[str]) -> str:

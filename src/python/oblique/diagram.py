@@ -421,10 +421,10 @@ class Diagram:
             "method": None if method is None else _arguments.choice("method", method, _METHODS),
             "samples": None if samples is None else _arguments.count("samples", samples, 2),
             "max_steps": None if max_steps is None else _arguments.count("max_steps", max_steps),
-            "settle": None if settle is None else bool(settle),
-            "check": bool(check), "trust": bool(trust),
-            "sensitivity": _arguments.names("sensitivity", sensitivity) if sensitivity else None, "halt_on_overload": bool(halt_on_overload),
-            "watch_overloads": None if watch_overloads is None else bool(watch_overloads)}
+            "settle": None if settle is None else _arguments.flag("settle", settle),
+            "check": _arguments.flag("check", check), "trust": _arguments.flag("trust", trust),
+            "sensitivity": _arguments.names("sensitivity", sensitivity) if sensitivity else None, "halt_on_overload": _arguments.flag("halt_on_overload", halt_on_overload),
+            "watch_overloads": None if watch_overloads is None else _arguments.flag("watch_overloads", watch_overloads)}
         if state is not None:
             if not isinstance(state, State):
                 raise RequestError(f"state={_arguments.shown(state)} is no state", "a State, as of run.state")

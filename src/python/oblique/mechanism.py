@@ -295,7 +295,7 @@ class Mechanism:
         """
         limit = "" if at_limit is None else _arguments.choice("at_limit", at_limit, ("open", "stop", "reverse"))
         motion = Motion(self._model.solve(_arguments.count("positions", positions, 2, 10_000_000),
-                                          _arguments.optional_positive("until", until, "s"), limit, bool(analysis)))
+                                          _arguments.optional_positive("until", until, "s"), limit, _arguments.flag("analysis", analysis)))
         if (motion.status == "open").any():
             warn(motion.remarks.strip())
         return motion
@@ -345,7 +345,7 @@ class Mechanism:
         the machine time of the motion [s]; `split` and `slower` take a triad apart. Throws PatchError.
         """
         options = self._patching(gain, bandwidth, method, split, slower)
-        options.update(derivatives=bool(derivatives), force=bool(force),
+        options.update(derivatives=_arguments.flag("derivatives", derivatives), force=_arguments.flag("force", force),
                        unit=_arguments.optional_positive("unit", unit, self.length_unit),
                        period=_arguments.optional_positive("period", period, "s"))
         library = shipped_blocks if blocks is None else blocks

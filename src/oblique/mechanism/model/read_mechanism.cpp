@@ -126,7 +126,7 @@ class MechanismReader {
     const auto at_limit = motion.string("at_limit");
     motion.finish();
     if (until && !(*until > 0 && std::isfinite(*until))) {
-      motion.report("until", fmt::format("'until' of [motion] is {}", *until), "a time above 0 [s]");
+      motion.report("until", fmt::format("'until' of [motion] is {}", *until), "a finite time above 0 [s]");
     } else {
       mechanism_.motion.until = until;
     }
