@@ -89,7 +89,7 @@ void Runner::start() {
   branches_.look(begin_, states_, true, [this](std::size_t loop) { return switching_.mixes(loop); });
   if (sensitivities_) {
     if (switching_.slides()) sensitivities_->refuse_slide(begin_);
-    sensitivities_->start(begin_, states_, workspace_, options_.from.has_value());
+    sensitivities_->start(begin_, states_, workspace_, switching_.served(), options_.from.has_value());
   }
   last_whole_ = RunSnapshot(begin_, parts());
   piece_begin_ = piece_end_ = begin_;
@@ -256,7 +256,7 @@ void Runner::pass_piece() {
     if (integration_) integration_->solver().states_at(t_, before);
     sensitivities_->before_event(
         t_, before, integration_ ? integration_->sensitivities_at(t_) : sensitivities_->states());
-    sensitivities_->after_event(t_, states_, workspace_);
+    sensitivities_->after_event(t_, states_, workspace_, switching_.served());
   }
   piece_begin_ = t_;
   if (segments_.halted()) {  // within a step, at whose end the solver is

@@ -70,6 +70,33 @@ TEST(Gradient, OfAnIntegralThatTheTimeWeights) {
   EXPECT_NEAR(found.by_parameter[0], by_start, kGradientTolerance);
 }
 
+// What an event stores where the run starts is what it held, 0, and y integrates it.
+TEST(Gradient, OfWhatAnEventStoresAtTheStart) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("keep", R"toml(
+[inputs]
+on = { doc = "Stores." }
+[parameters]
+kept = { default = 0, doc = "What it stores." }
+[outputs]
+out = { doc = "What it holds." }
+[memories]
+m = 0
+[equations]
+out = "m"
+[[events]]
+when = "on > 0.5"
+set = { m = "kept" }
+)toml");
+  const Compiled made(R"toml(one = { type = "constant" }
+k = { type = "keep", on = "one" }
+y = { type = "integrator", in = "k" }
+)toml",
+                      "", library);
+  const Gradient found =
+      gradient(made.program, made.flat, until(2), {RunNumber::Kind::value, "y", 2}, {"k.kept"});
+  EXPECT_NEAR(found.by_parameter[0], 2, kGradientTolerance);
+}
+
 // A servo loop that starts at rest: the gradient holds what its rest depends on.
 TEST(Gradient, OfARunThatStartsAtRest) {
   const Compiled made(

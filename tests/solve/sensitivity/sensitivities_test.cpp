@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -209,13 +210,56 @@ TEST(Sensitivities, OfWhatAnEventSetsAtTheStart) {
 // With a later pulse x would begin later, and with an earlier one its begin would lie before the run.
 // It takes the state with it, whose start is the parameter: the held sample of 2 e^(−t) at 0 is the start.
 TEST(Sensitivities, OfAStateThatAnEventStoresAtTheStart) {
+  for (const char* const initial : {"2", "0"}) {  // of 0 it stores what it held
+    const Compiled made(
+        fmt::format("x = {{ type = \"integrator\", in = \"-x\", initial = {} }}\n", initial) +
+        "y = { type = \"delay-line\", in = \"x\", delay = 0.52, stages = 1, straight = 0 }\n");
+    const auto run = differentiated(made, {"x.initial"}, 1);
+    expect_column(run, "d(y)/d(x.initial)", kTolerance, [&](double t) {
+      return t < 0.26 ? 0 : t < 0.78 ? 1 : std::exp(-0.52);  // in the middle between pulses; in no row
+    });
+  }
+}
+
+// A sampled regulator: x′ = r − x while it tracks, 0.1 s from 0.3 + k/2 on, and d, what it stored, else. Of
+// r = 0 all is zero, and each event stores the value that was there; ∂x/∂r is the response to 1.
+TEST(Sensitivities, OfWhatAnEventSetsToTheValueThatItHad) {
   const Compiled made(
-      "x = { type = \"integrator\", in = \"-x\", initial = 2 }\n"
-      "y = { type = \"delay-line\", in = \"x\", delay = 0.52, stages = 1, straight = 0 }\n");
-  const auto run = differentiated(made, {"x.initial"}, 1);
-  expect_column(run, "d(y)/d(x.initial)", kTolerance, [&](double t) {
-    return t < 0.26 ? 0 : t < 0.78 ? 1 : std::exp(-0.52);  // in the middle between pulses; in no row
+      "r = { type = \"constant\", value = 0 }\n"
+      "p = { type = \"pulse-train\", period = 0.5, width = 0.1, delay = 0.3 }\n"
+      "e = { type = \"summer\", in = [\"r\", \"-x\"] }\n"
+      "d = { type = \"track-and-store\", in = \"e\", track = \"p\" }\n"
+      "x = { type = \"integrator\", in = \"d\" }\n");
+  expect_column(differentiated(made, {"r.value"}), "d(x)/d(r.value)", kTolerance, [](double t) {
+    double x = 0, stored = 0, since = 0;
+    for (double begin = 0.3; begin < t; begin += 0.5) {
+      x += stored * (begin - since);
+      since = std::min(begin + 0.1, t);
+      x = 1 - (1 - x) * std::exp(begin - since);
+      stored = 1 - x;
+    }
+    return x + stored * (t - since);
   });
+}
+
+// x stays where it is, and from 0.5 on where an event puts it, which is there.
+TEST(Sensitivities, OfAStateThatAnEventSetsToItsValue) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("put", R"toml(
+[parameters]
+to = { default = 0, doc = "Where it is put." }
+[outputs]
+x = { doc = "Its place." }
+[equations]
+"der(x)" = "0"
+[start]
+x = 0
+[[events]]
+when = "time > 0.52"
+set = { x = "to" }
+)toml");
+  const Compiled made("x = { type = \"put\" }\n", "", library);
+  expect_column(differentiated(made, {"x.to"}), "d(x)/d(x.to)", kTolerance,
+                [](double t) { return t < 0.52 ? 0 : 1; });
 }
 
 // Where nothing is integrated that a switch acts on, the solver goes on through its turns: max(sin 2t, c) is

@@ -252,6 +252,7 @@ std::optional<EventActions::Effect> EventActions::serve(double t, std::vector<do
   }
   Effect effect;
   effect.events = events;
+  served_.insert(served_.end(), events.begin(), events.end());
   effect.tables = program_.events()[served.front().event].repeats;
   effect.before_start = starting && program_.events()[served.front().event].before_start;
   const std::vector<double> before = x;

@@ -34,6 +34,7 @@ class EventActions {
   /// A new instant: no event has come at it yet, and the discrete states are as they are before it.
   void begin_instant() {
     came_.assign(came_.size(), false);
+    served_.clear();
     jumped_ = false;
     uncertain_.begin_instant(workspace_.discrete_states());
   }
@@ -49,6 +50,9 @@ class EventActions {
   /// Serves all events whose conditions have become true at (t, x), where all event functions were evaluated;
   /// while `starting` only those that come at a start. Nothing where there are none. Throws SolveError.
   std::optional<Effect> serve(double t, std::vector<double>& x, bool starting);
+
+  /// The events that have been served since this instant began, or at the start, in this order.
+  const std::vector<std::size_t>& served() const { return served_; }
 
   /// The run ends at t: tells of events that came ever faster, and then no more.
   void end(double t);
@@ -89,9 +93,10 @@ class EventActions {
   double span_;
   double end_ = std::numeric_limits<double>::infinity();  ///< [s] of the run
   const std::string& file_;
-  std::vector<bool> held_;  ///< see `conditions`
-  std::vector<bool> came_;  ///< of each event that sets states: whether it came at this instant
-  bool jumped_ = false;     ///< whether states have at this instant, by what events set
+  std::vector<bool> held_;           ///< see `conditions`
+  std::vector<bool> came_;           ///< of each event that sets states: whether it came at this instant
+  std::vector<std::size_t> served_;  ///< see `served`
+  bool jumped_ = false;              ///< whether states have at this instant, by what events set
   std::vector<EventPace> paces_;
   bool told_of_lost_ = false;
   double piled_up_ = -std::numeric_limits<double>::infinity();  ///< when one last went over into another [s]

@@ -152,6 +152,8 @@ class Switching {
   /// What must be kept to go on later: whether each condition held, and whether each switch slides or rests
   /// at zero along with what does.
   const std::vector<bool>& conditions() const { return actions_.conditions(); }
+  /// The events that came when everything was settled last, in this order.
+  const std::vector<std::size_t>& served() const { return actions_.served(); }
   std::vector<bool> sliding() const;
   /// `resume` is to follow. Empty `sliding`: it is not known.
   void restore(std::vector<bool> conditions, std::vector<bool> sliding) {

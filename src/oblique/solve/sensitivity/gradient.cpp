@@ -298,6 +298,20 @@ class Adjoint {
   std::unique_ptr<void, Free> memory_;
 };
 
+/// The events that have come where the run starts, by where it starts: tables that may have been moved along,
+/// and those of which the condition holds.
+std::vector<std::size_t> served_at_start(const network::Program& program, double t, std::span<const double> x,
+                                         network::Workspace& workspace) {
+  std::vector<std::size_t> served;
+  std::vector<double> signals(program.n_signals());
+  const auto here = program.signals(t, x.data(), signals.data(), workspace);
+  for (std::size_t e = 0; e < program.events().size(); ++e) {
+    const network::Event& event = program.events()[e];
+    if (event.repeats || (event.at_start && here && here->condition(e))) served.push_back(e);
+  }
+  return served;
+}
+
 }  // namespace
 
 Gradient gradient(const network::Program& program, const diagram::FlatDiagram& diagram,
@@ -347,7 +361,8 @@ Gradient gradient(const network::Program& program, const diagram::FlatDiagram& d
   Sensitivities derivatives(program, diagram, sensitivity_parameters(diagram, names), how.until - begin);
   network::Workspace at_start(program);
   at_start.load_discrete_states(positions);
-  derivatives.start(begin, start, at_start, how.from.has_value());
+  const std::vector<std::size_t> served = served_at_start(program, begin, start, at_start);
+  derivatives.start(begin, start, at_start, served, how.from.has_value());
   if (start.empty()) {  // nothing is integrated: the number follows from the parameters at once
     throw SolveError(SolveError::Kind::other, begin,
                      {{diagram.file, {}},

@@ -300,12 +300,12 @@ void Sensitivities::refuse_jump_of_angle(std::size_t angle, double from, double 
 
 /// States may start from what events have set at the start, and that from where states start.
 void Sensitivities::start(double t, std::span<const double> x, const network::Workspace& run,
-                          bool from_state) {
+                          const std::vector<std::size_t>& served, bool from_state) {
   constexpr int kMostRounds = 3;
   load(run);
   if (from_state) return;
   for (int round = 0;; ++round) {
-    start_memories(t, x, run);
+    start_memories(t, x, run, served);
     if (round == 0) refuse_turns_at_start(t, x);
     const std::vector<std::vector<double>> before = states_;
     start_states(t, x);
@@ -378,7 +378,8 @@ void Sensitivities::start_states(double t, std::span<const double> x) {
 }
 
 /// What events have set where the run starts, from what the memories were before them.
-void Sensitivities::start_memories(double t, std::span<const double> x, const network::Workspace& run) {
+void Sensitivities::start_memories(double t, std::span<const double> x, const network::Workspace& run,
+                                   const std::vector<std::size_t>& served) {
   const std::vector<double> now = discrete_states_;
   const network::Workspace fresh(*program_);
   const std::vector<bool> positions = are_positions();
@@ -389,8 +390,8 @@ void Sensitivities::start_memories(double t, std::span<const double> x, const ne
   memories_.assign(count(), std::vector<double>(n_discrete_states_));
   std::vector<std::vector<double>> memories = memories_;
   for (std::size_t m = 0; m < n_discrete_states_; ++m) {
-    if (now[m] == discrete_states_[m]) continue;
-    const auto action = matching_action(t, false, m, now[m]);
+    if (now[m] == discrete_states_[m] && !is_set(served, false, m)) continue;
+    const auto action = matching_action(t, served, false, m, now[m]);
     const bool is_logic = now[m] == 0 || now[m] == 1;
     if (!action && is_logic) continue;
     if (!action)
@@ -490,12 +491,24 @@ std::vector<double> Sensitivities::delays(double t, const std::vector<double>& d
   return by_time && !found ? phase_delays_ : delays;
 }
 
-/// An action of an event that would set this to that value, as the place of its signals.
-std::optional<std::size_t> Sensitivities::matching_action(double t, bool on_state, std::size_t index,
-                                                          double value) {
+/// Whether an event that came has set this, be it to the value that it had: that may move with a parameter
+/// otherwise than it did.
+bool Sensitivities::is_set(const std::vector<std::size_t>& served, bool on_state, std::size_t index) const {
+  return std::any_of(served.begin(), served.end(), [&](std::size_t e) {
+    const auto& actions = run_events_[e].actions;
+    return std::any_of(actions.begin(), actions.end(), [&](const network::Event::Action& action) {
+      return action.on_state == on_state && action.index == index;
+    });
+  });
+}
+
+/// The last action of the events that came which would set this to that value, as the place of its signals.
+std::optional<std::size_t> Sensitivities::matching_action(double t, const std::vector<std::size_t>& served,
+                                                          bool on_state, std::size_t index, double value) {
   evaluate_or_refuse(t, before_.x, {});
   constexpr double kSame = 1e-9;
-  for (std::size_t e = 0; e < run_events_.size(); ++e) {
+  for (auto last = served.rbegin(); last != served.rend(); ++last) {
+    const std::size_t e = *last;
     for (std::size_t a = 0; a < run_events_[e].actions.size(); ++a) {
       const network::Event::Action& action = run_events_[e].actions[a];
       if (action.on_state != on_state || action.index != index) continue;
@@ -506,7 +519,8 @@ std::optional<std::size_t> Sensitivities::matching_action(double t, bool on_stat
   return std::nullopt;
 }
 
-void Sensitivities::after_event(double t, std::span<const double> x, const network::Workspace& run) {
+void Sensitivities::after_event(double t, std::span<const double> x, const network::Workspace& run,
+                                const std::vector<std::size_t>& served) {
   const std::vector<double> discrete_states(run.discrete_states().begin(), run.discrete_states().end());
   const std::size_t n = run_states_.size();
   struct Set {
@@ -514,16 +528,16 @@ void Sensitivities::after_event(double t, std::span<const double> x, const netwo
   };
   std::vector<Set> set_states, set_memories;
   for (std::size_t i = 0; i < n; ++i) {
-    if (x[i] == before_.x[i]) continue;
-    const auto action = matching_action(t, true, i, x[i]);
+    if (x[i] == before_.x[i] && !is_set(served, true, i)) continue;
+    const auto action = matching_action(t, served, true, i, x[i]);
     if (!action)
       refuse(t, fmt::format("several events one after the other have set '{}'", run_states_[i].name));
     set_states.push_back({i, *action});
   }
   const std::vector<bool> is_position = are_positions();
   for (std::size_t m = 0; m < n_discrete_states_; ++m) {
-    if (is_position[m] || discrete_states[m] == discrete_states_[m]) continue;
-    const auto action = matching_action(t, false, m, discrete_states[m]);
+    if (is_position[m] || (discrete_states[m] == discrete_states_[m] && !is_set(served, false, m))) continue;
+    const auto action = matching_action(t, served, false, m, discrete_states[m]);
     if (!action) refuse(t, "several events one after the other have set a discrete state");
     set_memories.push_back({m, *action});
   }

@@ -43,8 +43,10 @@ class Sensitivities {
   /// dx/dp of each parameter where the run starts, or where the last event has left it.
   const std::vector<std::vector<double>>& states() const { return states_; }
 
-  /// The run starts there, settled. A run that goes on from a saved state has none yet.
-  void start(double t, std::span<const double> x, const network::Workspace& run, bool from_state);
+  /// The run starts there, settled, after the events `served`. A run that goes on from a saved state has none
+  /// yet.
+  void start(double t, std::span<const double> x, const network::Workspace& run,
+             const std::vector<std::size_t>& served, bool from_state);
   /// d(dx/dt)/dp of parameter k where dx/dp = s; false where there is no value.
   bool rates(double t, const double* x, std::size_t k, const double* s, double* rates);
   /// d output/dp, of each output by each parameter, in the units of the outputs and the parameters.
@@ -56,9 +58,10 @@ class Sensitivities {
 
   /// The run goes on from `from` to `to` without an event. Refuses what jumps there all the same.
   void pass(double from, double to, const Interpolant& within);
-  /// An event is about to be settled; then it is.
+  /// An event is about to be settled; then it is, and the events `served` have come.
   void before_event(double t, std::span<const double> x, std::vector<std::vector<double>> s);
-  void after_event(double t, std::span<const double> x, const network::Workspace& run);
+  void after_event(double t, std::span<const double> x, const network::Workspace& run,
+                   const std::vector<std::size_t>& served);
   /// What is not followed. Throw SolveError.
   [[noreturn]] void refuse_slide(double t) const;
   [[noreturn]] void refuse_jump(double t) const;
@@ -78,7 +81,8 @@ class Sensitivities {
   void load(const network::Workspace& run);
   void refuse_jump_of_angle(std::size_t angle, double from, double to, const Interpolant& within);
   void start_states(double t, std::span<const double> x);
-  void start_memories(double t, std::span<const double> x, const network::Workspace& run);
+  void start_memories(double t, std::span<const double> x, const network::Workspace& run,
+                      const std::vector<std::size_t>& served);
   void refuse_turns_at_start(double t, std::span<const double> x);
   /// Of each discrete state: whether a switch or the timeline sets it, and no event.
   std::vector<bool> are_positions() const;
@@ -90,7 +94,9 @@ class Sensitivities {
     std::vector<std::vector<double>> s;
   };
   std::vector<double> delays(double t, const std::vector<double>& discrete_states, bool acts);
-  std::optional<std::size_t> matching_action(double t, bool on_state, std::size_t index, double value);
+  bool is_set(const std::vector<std::size_t>& served, bool on_state, std::size_t index) const;
+  std::optional<std::size_t> matching_action(double t, const std::vector<std::size_t>& served, bool on_state,
+                                             std::size_t index, double value);
 
   const diagram::FlatDiagram& diagram_;
   std::vector<SensitivityParameter> parameters_;
