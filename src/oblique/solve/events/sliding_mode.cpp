@@ -50,6 +50,7 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
       edges_(edges),
       independent_(independent),
       span_(span),
+      seen_(program.switches().size(), false),
       follows_(program.switches().size(), false),
       rests_(program.switches().size(), false),
       silent_(program.switches().size(), false),
@@ -58,7 +59,12 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
       strongest_(program.switch_structure().members.size()),
       firmest_(strongest_.size()),
       scratch_(std::max(program.n_states(), program.jacobian_pattern().entries())),
-      moved_(program.n_states()) {}
+      moved_(program.n_states()) {
+  for (const network::Event& event : program.events()) {
+    if (event.repeats) continue;
+    for (const std::uint32_t s : program.switch_structure().positions_in(event.condition)) seen_[s] = true;
+  }
+}
 
 bool SlidingMode::holds(std::size_t s) const {
   return std::find(units_.begin(), units_.end(), program_.switch_structure().unit[s]) != units_.end();
@@ -196,6 +202,19 @@ void SlidingMode::load_base() {
     workspace_.set_discrete_state(discrete_state, position);
 }
 
+void SlidingMode::put_at_rest(bool rests) {
+  if (!active()) return;
+  load_base();
+  for (std::size_t u = 0; rests && u < units_.size(); ++u) {
+    const auto above = rests_above(u);
+    for (const std::uint32_t s : program_.switch_structure().members[units_[u]]) {
+      if (above)
+        workspace_.set_discrete_state(program_.switches()[s].discrete_state,
+                                      *above != program_.switch_structure().opposite[s] ? 1 : 0);
+    }
+  }
+}
+
 bool SlidingMode::settle_sides(double t, std::span<const double> x) {
   return std::all_of(sides_.begin(), sides_.end(), [&](SlideSide& side) { return settle(side, t, x); });
 }
@@ -227,7 +246,16 @@ bool SlidingMode::begin(const std::vector<std::uint32_t>& units, const std::vect
   return false;
 }
 
+/// Whether an event reads a unit or what follows it.
+bool SlidingMode::is_seen(std::size_t unit) const {
+  const auto& members = program_.switch_structure().members[units_[unit]];
+  return std::any_of(members.begin(), members.end(), [this](std::uint32_t s) { return seen_[s]; }) ||
+         std::any_of(followers_.begin(), followers_.end(),
+                     [&](std::uint32_t s) { return seen_[s] && followed_by(s) == units_[unit]; });
+}
+
 void SlidingMode::show(std::size_t unit, bool above) {
+  if (!is_seen(unit)) return;
   const auto &upper = upper_side(unit).positions, &lower = sides_[0].positions;
   for (std::size_t k = 0; k < upper.size(); ++k) {
     if (upper[k].second == lower[k].second) continue;  // of what this unit does not act on

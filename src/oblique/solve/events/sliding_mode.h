@@ -91,12 +91,14 @@ class SlidingMode {
   /// Of a unit that nothing couples and that rests on the one side to which the other drives: whether that is
   /// the upper one.
   std::optional<bool> rests_above(std::size_t unit) const;
-  /// Shows events a unit that nothing couples, and what follows it, on one of its sides: what rests is there
-  /// from when it begins.
+  /// Shows events that read them a unit that nothing couples, and what follows it, on one of its sides: what
+  /// rests is there from when it begins.
   void show(std::size_t unit, bool above);
   /// Of such a unit whose event function reads this state alone: whether the side on which it rests leads it
   /// back to the switching surface from just beside it, as an amplifier beyond its limit comes back.
   bool comes_back(std::size_t unit, std::size_t state, double t, std::span<const double> x);
+  /// Puts the switches of what rests on one side there, where nothing moves; or back to where they were.
+  void put_at_rest(bool rests);
   /// How fast the side that drives a unit most moves its event function; 0 of one that is coupled.
   double fastest_drive(std::size_t unit) const { return drives(unit).stronger(); }
   /// Whether both sides of a unit that nothing couples drive to the switching surface, and neither hardly.
@@ -157,6 +159,7 @@ class SlidingMode {
   bool move_tables_along(double t, std::span<const double> x, bool& still);
   void load(const SlideSide& side);
   void load_base();
+  bool is_seen(std::size_t unit) const;
   bool evaluate(SlideSide& side, double t, std::span<const double> x);
   bool take_common_rates(double t, std::span<const double> x);
   bool find_shares(double most_back);
@@ -181,6 +184,7 @@ class SlidingMode {
   EdgeValues& edges_;
   IndependentUnits& independent_;
   double span_;
+  std::vector<bool> seen_;  ///< of each switch: whether the condition of an event reads it, but of a table's
   std::vector<std::uint32_t> units_;
   std::vector<std::vector<std::size_t>> parts_;  ///< of `units_`: see IndependentUnits::parts_of
   std::vector<bool> slides_on_;                  ///< of each unit: it has begun to slide

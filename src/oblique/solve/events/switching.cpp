@@ -91,8 +91,11 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     if (takes) take();
     if (active() && settling_.settle(t, x) && takes) return true;
     if (!first || !rests_within_limits(program_, workspace_, event_functions_, location_.announced(), t, x,
-                                       bring_to_rest))
+                                       bring_to_rest)) {
+      slide_.put_at_rest(true);
       bring_to_rest();
+      slide_.put_at_rest(false);
+    }
     first = false;
     settling_.begin();
     if (takes && starts_move()) return true;
