@@ -315,4 +315,20 @@ TEST(Slide, ThatRestsAboveHasTurnedOverOnce) {
   EXPECT_EQ(row_values(result, "m.out").back(), 1);
 }
 
+// x comes to zero at 0.5 and rests there, until at 1 what drives it on the one side jumps away: it could as
+// well stay, which is told, whether or not anything counts the turns.
+TEST(Slide, ThatCouldAsWellStayGoesWhereItIsDriven) {
+  for (const std::string counter : {"", "n = { type = \"counter\", clock = \"c\" }\n"}) {
+    const Compiled made(R"toml(g = { type = "step", at = 1, from = -1, to = 1 }
+c = { type = "comparator", in = ["x"] }
+m = { type = "multiplier", in = ["g", "c"] }
+x = { type = "integrator", in = ["m"], initial = 0.5 }
+)toml" + counter);
+    const auto result = run_of(made, {.until = 2, .samples = 5});
+    EXPECT_NEAR(row_values(result, "x").back(), 1, 1e-7);  // ten tolerances
+    ASSERT_EQ(result.warnings.size(), 1U);
+    EXPECT_THAT(result.warnings.front().what, ::testing::EndsWith("it could as well stay"));
+  }
+}
+
 }  // namespace oblique::solve
