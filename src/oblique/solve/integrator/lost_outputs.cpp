@@ -87,16 +87,18 @@ void LostOutputs::look(double t, std::span<const double> x) {
   outputs_(t, x.data(), values_.data());  // leaves the solutions of algebraic loops where they were
 }
 
-/// Looks which states are within their errors, hardly move, and move an output by much by themselves. One
-/// that crosses zero moves, and is known as it was.
+/// Looks which states are so small that their absolute tolerance decides what they are known to, hardly move,
+/// and move an output by much by themselves. One that crosses zero moves, and is known as it was.
 void LostOutputs::find_decayed(double t, std::span<const double> x) {
   constexpr double kSoon = 1e-3;  // of the run
   std::vector<double> rates(x.size());
   if (!system_.derivatives(t, x.data(), rates.data())) return;
   off_states_.assign(x.begin(), x.end());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double error = error_of_state(i, x[i]);
-    if (x[i] == 0 || std::abs(x[i]) > error || std::abs(rates[i]) * kSoon * span_ > error) continue;
+    const double error = error_of_state(i, x[i]), size = std::abs(x[i]);
+    if (size == 0 || settings_.relative_tolerance * size > absolute_tolerance(i) ||
+        std::abs(rates[i]) * kSoon * span_ > std::max(size, error))
+      continue;
     for (const double off : {error, -error}) {
       off_states_[i] = x[i] + off;
       if (!outputs_(t, off_states_.data(), moved_.data())) continue;
