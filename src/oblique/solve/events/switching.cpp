@@ -432,14 +432,15 @@ const network::Evaluation& Switching::evaluate(double t, std::span<const double>
 template <class Evaluate>
 bool Switching::inside(double t, std::span<const double> values, const Evaluate& evaluate) const {
   const double near = time_resolution(t);
-  const double inwards = t - begin_ <= near ? 1 : end_ - t <= near ? -1 : 0;
-  if (inwards == 0) return evaluate(t);
+  const bool at_begin = t - begin_ <= near, at_end = end_ - t <= near;  // both, of one as short as a rounding
+  if (!at_begin && !at_end) return evaluate(t);
   const auto has_values = [&](double at) {
     return evaluate(at) &&
            std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
   };
   for (const double distance : {0, 2, 16}) {
-    if (has_values(t + inwards * distance * near)) return true;
+    if ((at_begin && has_values(t + distance * near)) || (at_end && has_values(t - distance * near)))
+      return true;
   }
   return evaluate(t);
 }
