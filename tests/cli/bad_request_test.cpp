@@ -89,6 +89,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequestCase{"PositionsThatAreNoDigits",
                        "oblique solve diagrams/mechanisms/four-bar.toml --positions 1e3", 2,
                        "--positions: 1e3; expected a whole number from 2 to 10000000"},
+        BadRequestCase{"SeedOfASweepBelowZero", "oblique sweep diagrams/lessons/circle.toml --seed -1", 2,
+                       "--seed: -1; expected a whole number from 0 on"},
         BadRequestCase{"EndlessMotion", "oblique solve diagrams/mechanisms/four-bar.toml --until inf", 2,
                        "--until inf; expected a finite time above 0"},
         BadRequestCase{"GainThatIsNoNumber", "oblique compare diagrams/mechanisms/four-bar.toml --gain high",

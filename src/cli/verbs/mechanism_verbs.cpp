@@ -135,12 +135,12 @@ void add_compare(CLI::App& app, Chosen& chosen) {
       ->type_name("X");
   verb->add_option("--seed", request->seed, "chooses the random numbers")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(0, kAnyNumber))
       ->needs(monte_carlo);
   verb->add_option("--first-run", request->first_run,
                    "number of the first run; with --monte-carlo 1 it repeats one")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(0, kAnyNumber))
       ->needs(monte_carlo);
   verb->add_option("--threads", request->threads,
                    "runs at a time, which changes no result (default: what the processor has)")

@@ -42,7 +42,7 @@ void add_sweep(CLI::App& app, Chosen& chosen) {
   verb->add_flag("--sobol", request->sobol, "choose the values by a Sobol sequence between their bounds");
   verb->add_option("--seed", request->seed, "chooses the random numbers")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, kAnyNumber));
   verb->add_option("--gain", request->gain, "of a mechanism: gain of its servo amplifiers (default 1e6)");
   verb->add_option("--method", request->method, "of a mechanism: how it is patched (default triangles)")
       ->type_name("triangles|gradient|paper");

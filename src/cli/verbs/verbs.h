@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -23,6 +24,8 @@ void choose(CLI::App* verb, Chosen& chosen, const std::shared_ptr<Request>& requ
   });
 }
 
+inline constexpr std::uint64_t kAnyNumber = std::numeric_limits<std::uint64_t>::max();
+
 /// A whole number, written in digits, from `least` to `most`.
 inline CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   const auto check = [least, most](const std::string& text) -> std::string {
@@ -30,9 +33,10 @@ inline CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
     const char* const end = text.data() + text.size();
     const auto [at, error] = std::from_chars(text.data(), end, number);
     if (error == std::errc() && at == end && least <= number && number <= most) return {};
-    return fmt::format("{}; expected a whole number from {} to {}", text, least, most);
+    return fmt::format("{}; expected a whole number from {}{}", text, least,
+                       most == kAnyNumber ? " on" : fmt::format(" to {}", most));
   };
-  return {check, fmt::format("INT in [{} - {}]", least, most), "whole_number"};
+  return {check, most == kAnyNumber ? "INT" : fmt::format("INT in [{} - {}]", least, most), "whole_number"};
 }
 
 /// -o and --columns of a verb that writes a table.
