@@ -315,6 +315,15 @@ TEST(Slide, ThatRestsAboveHasTurnedOverOnce) {
   EXPECT_EQ(row_values(result, "m.out").back(), 1);
 }
 
+TEST(Slide, OfALimitIsLeftWhereItsDriveJumpsBack) {
+  const Compiled made(R"toml(s = { type = "step", at = 3, from = 1, to = -1 }
+w = { type = "integrator", in = ["s"], limit = 0.3 }
+)toml");
+  const auto result = run_of(made, {.until = 3.2, .samples = 5});
+  EXPECT_NEAR(row_values(result, "w").back(), 0.1, 1e-7);  // ten tolerances
+  EXPECT_TRUE(result.warnings.empty()) << result.warnings.front().what;
+}
+
 // x comes to zero at 0.5 and rests there, until at 1 what drives it on the one side jumps away: it could as
 // well stay, which is told, whether or not anything counts the turns.
 TEST(Slide, ThatCouldAsWellStayGoesWhereItIsDriven) {

@@ -50,7 +50,6 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
       edges_(edges),
       independent_(independent),
       span_(span),
-      seen_(program.switches().size(), false),
       follows_(program.switches().size(), false),
       rests_(program.switches().size(), false),
       silent_(program.switches().size(), false),
@@ -59,12 +58,7 @@ SlidingMode::SlidingMode(const network::Program& program, network::Workspace& wo
       strongest_(program.switch_structure().members.size()),
       firmest_(strongest_.size()),
       scratch_(std::max(program.n_states(), program.jacobian_pattern().entries())),
-      moved_(program.n_states()) {
-  for (const network::Event& event : program.events()) {
-    if (event.repeats) continue;
-    for (const std::uint32_t s : program.switch_structure().positions_in(event.condition)) seen_[s] = true;
-  }
-}
+      moved_(program.n_states()) {}
 
 bool SlidingMode::holds(std::size_t s) const {
   return std::find(units_.begin(), units_.end(), program_.switch_structure().unit[s]) != units_.end();
@@ -248,10 +242,13 @@ bool SlidingMode::begin(const std::vector<std::uint32_t>& units, const std::vect
 
 /// Whether an event reads a unit or what follows it.
 bool SlidingMode::is_seen(std::size_t unit) const {
-  const auto& members = program_.switch_structure().members[units_[unit]];
-  return std::any_of(members.begin(), members.end(), [this](std::uint32_t s) { return seen_[s]; }) ||
-         std::any_of(followers_.begin(), followers_.end(),
-                     [&](std::uint32_t s) { return seen_[s] && followed_by(s) == units_[unit]; });
+  const network::SwitchStructure& structure = program_.switch_structure();
+  const auto& members = structure.members[units_[unit]];
+  return std::any_of(members.begin(), members.end(),
+                     [&](std::uint32_t s) { return structure.read_by_events[s]; }) ||
+         std::any_of(followers_.begin(), followers_.end(), [&](std::uint32_t s) {
+           return structure.read_by_events[s] && followed_by(s) == units_[unit];
+         });
 }
 
 void SlidingMode::show(std::size_t unit, bool above) {

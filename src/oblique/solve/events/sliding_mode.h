@@ -184,7 +184,6 @@ class SlidingMode {
   EdgeValues& edges_;
   IndependentUnits& independent_;
   double span_;
-  std::vector<bool> seen_;  ///< of each switch: whether the condition of an event reads it, but of a table's
   std::vector<std::uint32_t> units_;
   std::vector<std::vector<std::size_t>> parts_;  ///< of `units_`: see IndependentUnits::parts_of
   std::vector<bool> slides_on_;                  ///< of each unit: it has begun to slide

@@ -172,7 +172,11 @@ std::vector<SlidingMode::Doubt> Switching::doubts_of_slide(double t, std::span<c
     const bool known = slide_.settle_sides(t, x) && slide_.evaluate(t, x);
     for (std::size_t u = 0; known && u < doubts.size(); ++u) {
       const SlidingMode::Doubt then = slide_.doubt(u);
-      if (then != SlidingMode::Doubt::of_time) doubts[u] = then;
+      const std::uint32_t s = program_.switch_structure().members[slide_.units()[u]].front();
+      const bool is_limit = !program_.switch_structure().masks[s].empty();  // it is left: no choice
+      if (then == SlidingMode::Doubt::none || then == SlidingMode::Doubt::of_side ||
+          (then == SlidingMode::Doubt::of_whether && !is_limit))
+        doubts[u] = then;
     }
     workspace_.load_discrete_states(before);
     slide_.settle_sides(t, x);
