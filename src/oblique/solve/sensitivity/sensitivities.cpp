@@ -507,8 +507,8 @@ std::optional<std::size_t> Sensitivities::matching_action(double t, const std::v
                                                           bool on_state, std::size_t index, double value) {
   evaluate_or_refuse(t, before_.x, {});
   constexpr double kSame = 1e-9;
-  for (auto last = served.rbegin(); last != served.rend(); ++last) {
-    const std::size_t e = *last;
+  const std::vector<std::size_t> last_first(served.rbegin(), served.rend());
+  for (const std::size_t e : last_first) {
     for (std::size_t a = 0; a < run_events_[e].actions.size(); ++a) {
       const network::Event::Action& action = run_events_[e].actions[a];
       if (action.on_state != on_state || action.index != index) continue;
