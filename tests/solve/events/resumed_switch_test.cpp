@@ -72,6 +72,31 @@ clock = { type = "pulse-train", period = 0.1, width = 0.05 }
   EXPECT_THAT(testing::row_values(run, "s"), ::testing::Each(1));
 }
 
+// A lag of 10 ns behind a sine differs from it by −1e-8 cos t, which is positive from 5π/2 on. 0.1 µs before,
+// the state that is saved is off by more than that: what begins with it turns the comparator over when the
+// difference is 30 times as large, a half of a second late, and says so.
+TEST(ResumedSwitch, ThatTurnsOverLateByWhatTheSavedStateIsOffIsToldOf) {
+  const testing::Compiled made(R"toml(
+x = { type = "sine-source", frequency = "1/(2*pi)" }
+l = { type = "transfer-lag", in = "x", time_constant = 1e-8 }
+c = { type = "comparator", in = ["-x", "l"] }
+)toml");
+  RunOptions options;
+  options.until = 7.8539815;
+  options.tolerance = 1e-8;
+  std::string text = to_text(oblique::solve::run(made.program, made.flat, options).state);
+  const std::size_t at = text.find("\"l\" = ");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, text.find('\n', at) - at, "\"l\" = 1.0000000002");
+  options.from = parse_run_state(text, "state.toml");
+  options.until = 12;
+  const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
+  ASSERT_EQ(run.warnings.size(), 1U);
+  EXPECT_THAT(run.warnings.front().what,
+              ::testing::StartsWith("'c' (in > 0) does not hold from t = 7.854"));
+  EXPECT_THAT(run.warnings.front().what, HasSubstr("so that it may be late"));
+}
+
 // x′ = 0.5 − sgn x slides along zero from t = 2/3 on.
 const char* const kSlide = R"(
 half = { type = "constant", value = 0.5 }

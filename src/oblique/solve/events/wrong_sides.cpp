@@ -7,6 +7,7 @@ namespace oblique::solve {
 namespace {
 
 constexpr double kSurely = 30;  ///< errors
+constexpr double kClearly = 3;  ///< where it stays so for long
 
 }  // namespace
 
@@ -21,6 +22,7 @@ WrongSides::WrongSides(const network::Program& program, network::Workspace& work
       log_(log),
       span_(span),
       told_(program.switch_structure().members.size(), false),
+      clearly_since_(program.switches().size()),
       cuts_(program.switches().size(), 0) {}
 
 void WrongSides::allow() {
@@ -57,11 +59,14 @@ void WrongSides::tell(const RestingComparisons& resting, double t, std::span<con
   for (std::uint32_t s = 0; s < event_functions_.size(); ++s) {
     const std::uint32_t unit = program_.switch_structure().unit[s];
     const auto since = event_functions_.thresholds().let_since(s);
-    if (!since || told_[unit] || !(t - *since > kLong * span_)) continue;
     // What has not turned over yet, or was looked at and let touch, is a decay, which stays on its side,
-    // unless it goes on to the other one.
+    // unless it goes on to the other one, far or for long.
     const auto touch = settling_.touch(s);
-    const bool surely = event_functions_.against(s) > kSurely * std::max(errors[s], touch.value_or(0));
+    const double beyond = since ? event_functions_.against(s) / std::max(errors[s], touch.value_or(0)) : 0;
+    if (!(beyond > kClearly)) clearly_since_[s].reset();
+    if (beyond > kClearly && !clearly_since_[s]) clearly_since_[s] = t;
+    if (!since || told_[unit] || !(t - *since > kLong * span_)) continue;
+    const bool surely = beyond > kSurely || (clearly_since_[s] && t - *clearly_since_[s] > kLong * span_);
     if (resting.contains(unit) || ((settling_.last_turn(s) == 0 || touch) && !surely)) continue;
     if (!changes_signals(program_, workspace_, unit, t, x) &&
         !changes_rates(program_, workspace_, unit, t, x))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,8 +47,9 @@ class WrongSides {
   EventFunctions& event_functions_;
   EventLog& log_;
   double span_;
-  std::vector<bool> told_;  ///< of each unit
-  std::vector<int> cuts_;   ///< of the slack of each switch, in this step
+  std::vector<bool> told_;                            ///< of each unit
+  std::vector<std::optional<double>> clearly_since_;  ///< when each was first surely there [s]
+  std::vector<int> cuts_;                             ///< of the slack of each switch, in this step
   bool steps_damp_ = false;
 };
 
