@@ -85,6 +85,39 @@ b = { type = "track-and-store", in = "a", track = "clock" })"),
               IsEmpty());
 }
 
+// A delay line and a pulse train have their edges by the time alone, at one instant, and so have two lines of
+// one clock, of which the second takes what the first one had.
+TEST(UncertainReadings, OfADelayLineThatSamplesAtAnEdgeAreToldOf) {
+  constexpr const char* kRest =
+      " sets what it keeps by a signal that jumps at the same instant: at t = 0.5 s it takes 0, from before "
+      "the "
+      "jump; after it that is 1";
+  EXPECT_THAT(
+      warnings_of(R"(
+line = { type = "delay-line", in = "u", delay = 0.5, stages = 1 }
+next = { type = "delay-line", in = "line", delay = 0.5, stages = 1 }
+u = { type = "pulse-train", period = 1, width = 0.3, delay = 0.5 }
+c = { type = "comparator", in = ["2*u", "-one"] }
+one = { type = "constant" }
+behind = { type = "delay-line", in = "c", delay = 0.5, stages = 1 })"),
+      ::testing::UnorderedElementsAre(std::string("'line'") + kRest, std::string("'behind'") + kRest));
+  EXPECT_THAT(warnings_of(R"(
+line = { type = "delay-line", in = "u", delay = 0.5, stages = 1 }
+next = { type = "delay-line", in = "line", delay = 0.5, stages = 1 }
+u = { type = "pulse-train", period = 1, width = 0.3, delay = 0.45 })"),
+              IsEmpty());
+}
+
+// Where a pulse ends as the next one is due, the monostable itself knows which comes first.
+TEST(UncertainReadings, OfWhatABlockSetsItselfAreNotToldOf) {
+  EXPECT_THAT(warnings_of(R"(
+p = { type = "pulse-train", period = 0.5, width = 0.25 }
+m = { type = "monostable", trigger = "p", length = 0.5 }
+f = { type = "pulse-train", period = 1, width = 0.5 }
+n = { type = "counter", clock = "f" })"),
+              IsEmpty());
+}
+
 // x' = −2 sign x + w slides along x = 0, and the relay's mean is w/2: a store that samples it takes ±1.
 TEST(UncertainReadings, OfASlidingRelayAreToldOf) {
   EXPECT_THAT(

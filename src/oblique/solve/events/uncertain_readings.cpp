@@ -15,6 +15,17 @@ namespace {
 /// matters.
 constexpr double kMatters = 1e-6;
 
+constexpr const char* kJumps = "by a signal that jumps at the same instant";
+constexpr const char* kLetOneComeBefore = "let the one come a little before the other, as is meant";
+
+/// Whether an event comes at a time of its own: whatever its condition compares follows the time alone.
+bool is_of_time(const network::Program& program, const network::Event& event) {
+  const std::vector<std::uint32_t> switches = program.switch_structure().positions_in(event.condition);
+  return !event.of_mode && !switches.empty() &&
+         std::all_of(switches.begin(), switches.end(),
+                     [&](std::uint32_t s) { return program.switches()[s].rate.has_value(); });
+}
+
 }  // namespace
 
 UncertainReadings::UncertainReadings(const network::Program& program, network::Workspace& workspace,
@@ -25,7 +36,9 @@ UncertainReadings::UncertainReadings(const network::Program& program, network::W
       log_(log),
       file_(file),
       told_(program.events().size()),
-      signals_(program.n_signals()) {}
+      signals_(program.n_signals()) {
+  for (const network::Event& event : program.events()) of_time_.push_back(is_of_time(program, event));
+}
 
 /// What has changed at this instant, as it was before: but the comparisons that the conditions of these
 /// events are made of, and what their blocks keep, which are known as they are from now on.
@@ -52,11 +65,64 @@ std::vector<UncertainReadings::Put> UncertainReadings::as_before(std::span<const
   return changed;
 }
 
+/// Numbers that events put at a time of their own (an edge of a pulse train) and that change something, of
+/// the other blocks: what comes at the same instant does not read them yet.
+std::vector<UncertainReadings::Put> UncertainReadings::as_after(std::span<const std::size_t> events,
+                                                                std::span<const double> values,
+                                                                const std::string& block) const {
+  std::vector<Put> puts;
+  std::size_t k = 0;
+  for (const std::size_t e : events) {
+    const network::Event& event = program_.events()[e];
+    for (const network::Event::Action& action : event.actions) {
+      const double value = values[k++];
+      if (of_time_[e] && event.block != block && action.is_number && !action.on_state &&
+          value != workspace_.discrete_state(action.index))
+        puts.push_back({action.index, value});
+    }
+  }
+  return puts;
+}
+
+/// These, and the comparisons that turn over by them.
+std::vector<UncertainReadings::Put> UncertainReadings::led_to_by(std::vector<Put> puts, double t,
+                                                                 std::span<const double> x) {
+  std::vector<double> now(program_.switches().size()), then(now.size());
+  const std::vector<double> discrete_states(workspace_.discrete_states().begin(),
+                                            workspace_.discrete_states().end());
+  const KeptUnknowns kept(program_, workspace_);
+  if (!program_.event_functions(t, x.data(), now.data(), workspace_)) return puts;
+  for (const auto& [discrete_state, value] : puts) workspace_.set_discrete_state(discrete_state, value);
+  const bool is_there = program_.event_functions(t, x.data(), then.data(), workspace_).has_value();
+  workspace_.load_discrete_states(discrete_states);
+  for (std::uint32_t s = 0; is_there && s < now.size(); ++s) {
+    const double position = then[s] > 0 ? 1 : 0;
+    const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
+    if (std::abs(then[s] - now[s]) > kMatters && position != workspace_.discrete_state(discrete_state))
+      puts.push_back({discrete_state, position});
+  }
+  return puts;
+}
+
 void UncertainReadings::look(std::span<const std::size_t> events, std::span<const double> values, double t,
                              std::span<const double> x) {
   if (std::all_of(events.begin(), events.end(), [&](std::size_t event) { return told_[event]; })) return;
   const std::vector<Put> before = as_before(events);
-  if (!before.empty()) tell(events, values, values_with(before, events, t, x), t, {});
+  if (!before.empty()) {
+    tell(events, values, values_with(before, events, t, x), t,
+         {kJumps, "from after the jump; before it that was", kLetOneComeBefore});
+  }
+  std::size_t first = 0;
+  for (const std::size_t event : events) {
+    const std::size_t n = program_.events()[event].actions.size();
+    const std::vector<Put> after = as_after(events, values, program_.events()[event].block);
+    if (!after.empty()) {
+      const std::size_t alone[] = {event};
+      tell(alone, values.subspan(first, n), values_with(led_to_by(after, t, x), alone, t, x), t,
+           {kJumps, "from before the jump; after it that is", kLetOneComeBefore});
+    }
+    first += n;
+  }
   for (const std::uint32_t unit : slide_.units()) {
     std::vector<Put> flipped;
     const auto& members = program_.switch_structure().members[unit];
@@ -64,7 +130,10 @@ void UncertainReadings::look(std::span<const std::size_t> events, std::span<cons
       const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
       flipped.push_back({discrete_state, 1 - workspace_.discrete_state(discrete_state)});
     }
-    tell(events, values, values_with(flipped, events, t, x), t, program_.switches()[members.front()].block);
+    tell(events, values, values_with(flipped, events, t, x), t,
+         {fmt::format("by a signal of '{}', which slides along its switching surface",
+                      program_.switches()[members.front()].block),
+          "and as well it could be", "give the switch that slides a hysteresis, or smooth what is kept"});
   }
 }
 
@@ -87,7 +156,7 @@ std::vector<double> UncertainReadings::values_with(std::span<const Put> others,
 }
 
 void UncertainReadings::tell(std::span<const std::size_t> events, std::span<const double> values,
-                             std::span<const double> others, double t, const std::string& sliding) {
+                             std::span<const double> others, double t, const Doubt& doubt) {
   std::size_t k = 0;
   for (const std::size_t event : events) {
     const network::Event& what = program_.events()[event];
@@ -96,23 +165,11 @@ void UncertainReadings::tell(std::span<const std::size_t> events, std::span<cons
       const double value = values[k], other = others[k];
       if (!(std::abs(value - other) > kMatters * std::max({1.0, std::abs(value), std::abs(other)}))) continue;
       told_[event] = true;
-      if (sliding.empty()) {
-        log_.warn({{file_, {}},
-                   fmt::format(
-                       "'{}' sets what it keeps by a signal that jumps at the same instant: at t = {:.9g} s "
-                       "it takes {:.6g}, from after the jump; before it that was {:.6g}",
-                       what.block, t, value, other),
-                   {},
-                   "let the one come a little before the other, as is meant"});
-      } else {
-        log_.warn(
-            {{file_, {}},
-             fmt::format("'{}' sets what it keeps by a signal of '{}', which slides along its switching "
-                         "surface: at t = {:.9g} s it takes {:.6g}, and as well it could be {:.6g}",
-                         what.block, sliding, t, value, other),
-             {},
-             "give the switch that slides a hysteresis, or smooth what is kept"});
-      }
+      log_.warn({{file_, {}},
+                 fmt::format("'{}' sets what it keeps {}: at t = {:.9g} s it takes {:.6g}, {} {:.6g}",
+                             what.block, doubt.by, t, value, doubt.other, other),
+                 {},
+                 doubt.remedy});
     }
   }
 }
