@@ -383,6 +383,19 @@ s = { type = "sign", in = "-x4" }
   }
 }
 
+// The square of a ramp is zero until the ramp begins, and leaves zero with the rate 0: no error is in that.
+TEST(FaintTurn, IsNotWhatFollowsTheTimeAlone) {
+  const testing::Compiled made(R"(
+k = { type = "ramp", slope = 0.5, start = 1 }
+q = { type = "squarer", in = "k" }
+s = { type = "sign", in = "q" }
+x = { type = "integrator", in = ["s"] }
+)");
+  const oblique::solve::Run run = testing::run_of(made, {.until = 4});
+  EXPECT_THAT(run.warnings, IsEmpty());
+  EXPECT_NEAR(testing::row_values(run, "x").back(), -1 + 3, 1e-7);  // ten tolerances
+}
+
 // A kink is passed without an effect: |x| of a decay is as exact on both sides. A jump is not.
 TEST(FaintTurn, WithoutAnEffectIsNoMatter) {
   for (const auto& [type, restarts] : {std::pair("absolute-value", 0), std::pair("comparator", 1)}) {

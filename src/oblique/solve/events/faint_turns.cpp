@@ -111,7 +111,9 @@ std::vector<FaintTurn> FaintTurns::due(double t, const Announced& announced, Eve
     const std::uint32_t s = approach.number;
     const double excursion = event_functions.thresholds().excursion(s);
     farthest_[s] = std::max(farthest_[s], excursion);
-    if (!is_known(s) && announced[s] && is_faint(approach, errors[s], excursion, t, last_turn(s)))
+    // (What follows the time alone has no error.)
+    if (errors[s] > 0 && !is_known(s) && announced[s] &&
+        is_faint(approach, errors[s], excursion, t, last_turn(s)))
       found.push_back({s, t, errors[s], true, event_functions.states_behind(s)});
   }
   approaches_.clear();
