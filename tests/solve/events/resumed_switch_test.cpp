@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Switches of a run that is saved and gone on with: what the errors of the states do not tell from zero stays
 // where it was, and what slid goes on sliding.
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -72,6 +74,28 @@ clock = { type = "pulse-train", period = 0.1, width = 0.05 }
   EXPECT_THAT(testing::row_values(run, "s"), ::testing::Each(1));
 }
 
+// A relay servo with rate feedback, z′ = v, 0.35 v′ = −v − 1.5 sgn(z + 0.55 v), slides from t = 0.3166193 on,
+// with z′ = −z/0.55; it is saved 0.1 µs before, where the comparison lies within its errors.
+TEST(ResumedSwitch, SlidesThatBeginWithinTheErrorsDoSo) {
+  const testing::Compiled made(R"(
+z = { type = "integrator", in = ["v"], initial = 0.7173 }
+d = { type = "comparator", in = ["z", "0.55*v"], low = -1, high = 1 }
+u = { type = "gain", in = "d", factor = -1.5 }
+v = { type = "transfer-lag", in = "u", time_constant = 0.35, initial = -0.148 }
+)");
+  RunOptions options;
+  options.until = 0.3166192;
+  options.tolerance = 1e-6;
+  options.from =
+      parse_run_state(to_text(oblique::solve::run(made.program, made.flat, options).state), "s.toml");
+  options.until = 3;
+  const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
+  const double begin = testing::row_values(run, "z").front();
+  // Ten tolerances; from zero on z would be off by more were it left to chatter.
+  EXPECT_NEAR(testing::row_values(run, "z").back(), begin * std::exp(-(3 - 0.3166193) / 0.55), 1e-5);
+  EXPECT_EQ(run.event_count, 2);
+}
+
 // A lag of 10 ns behind a sine differs from it by −1e-8 cos t, which is positive from 5π/2 on. 0.1 µs before,
 // the state that is saved is off by more than that: what begins with it turns the comparator over when the
 // difference is 30 times as large, a half of a second late, and says so.
@@ -92,8 +116,7 @@ c = { type = "comparator", in = ["-x", "l"] }
   options.until = 12;
   const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
   ASSERT_EQ(run.warnings.size(), 1U);
-  EXPECT_THAT(run.warnings.front().what,
-              ::testing::StartsWith("'c' (in > 0) does not hold from t = 7.854"));
+  EXPECT_THAT(run.warnings.front().what, ::testing::StartsWith("'c' (in > 0) does not hold from t = 7.854"));
   EXPECT_THAT(run.warnings.front().what, HasSubstr("so that it may be late"));
 }
 

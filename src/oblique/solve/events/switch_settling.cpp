@@ -561,7 +561,7 @@ void SwitchSettling::keep_positions_within_errors() {
   const EventFunctionErrors& errors = event_functions_.weigh_errors();
   kept_.assign(decided_.size(), false);
   for (std::size_t s = 0; s < event_functions_.size(); ++s) {
-    const double error = std::min(errors[s], Thresholds::kMostSlack);
+    const double error = std::min(errors[s], SlidingMode::drift());
     if (event_functions_.is_known(s) || restored_[s] || !(std::abs(event_functions_[s]) <= error)) continue;
     event_functions_.thresholds().widen(s, error);
     if (event_functions_.against(s) > 0) let_touch(s);  // as it has been let lie there
