@@ -11,8 +11,10 @@ namespace oblique::solve {
 namespace {
 
 /// Over the relative tolerance: as many tolerances from an equilibrium the solver keeps the distance to some
-/// hundred times the tolerance of the run.
-constexpr double kNear = 1e-4;
+/// hundred times the tolerance of the run, as far as those of its errors go that are parts of the states. The
+/// absolute ones, which a finer run can make smaller alone, are all made in the first of the growth: by BDF
+/// they come to some 5 of its tolerances.
+constexpr double kNear = 1e-4, kNearZero = 2e-2;
 
 /// In powers of e: what has grown more is judged. Less is the growth of every step that turns away.
 constexpr double kGrown = 2;
@@ -50,16 +52,19 @@ void GrowthWatch::restart(double t, std::span<const double> x) {
   for (std::size_t i = 0; i < before_.size() && t > time_; ++i) stood_[i] = x[i] == before_[i];
   // Where segments are short, growth goes on through many of them: but for that of states that have jumped.
   for (std::size_t i = 0; i < before_.size(); ++i) {
-    if (!(std::abs(x[i] - before_[i]) < near_distance(i, x[i]))) growth_[i] = 0;
+    if (!(std::abs(x[i] - before_[i]) < near_distance(i, x[i], true))) growth_[i] = 0;
   }
   before_.assign(x.begin(), x.end());
   time_ = t;
 }
 
-double GrowthWatch::near_distance(std::size_t i, double x) const {
-  const double absolute =
-      settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
-  return kNear * (std::abs(x) + absolute / settings_.relative_tolerance);
+double GrowthWatch::absolute_tolerance(std::size_t i) const {
+  return settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
+}
+
+double GrowthWatch::near_distance(std::size_t i, double x, bool zero) const {
+  const double absolute = absolute_tolerance(i) / settings_.relative_tolerance;
+  return zero ? kNear * std::abs(x) + kNearZero * absolute : kNear * (std::abs(x) + absolute);
 }
 
 /// Whether any state has moved, and by little.
@@ -67,7 +72,7 @@ bool GrowthWatch::is_near_rest(std::span<const double> x) {
   bool any = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
     change_[i] = std::abs(x[i] - before_[i]);
-    near_[i] = change_[i] > 0 && change_[i] < near_distance(i, x[i]);
+    near_[i] = change_[i] > 0 && change_[i] < near_distance(i, x[i], true);
     any = any || near_[i];
   }
   return any;
@@ -201,63 +206,68 @@ bool GrowthWatch::leaves_at_once(std::span<const double> x, const std::vector<st
   if (stood && 1 / rate < most) return true;
   double error = 0;
   for (const std::size_t i : states)
-    error = std::max(error, settings_.relative_tolerance * near_distance(i, x[i]) / kNear);
+    error = std::max(error, settings_.relative_tolerance * std::abs(x[i]) + absolute_tolerance(i));
   return distance > (stood ? kErrorsOfSteps : kErrors) * error && error / distance / rate < most;
 }
 
 void GrowthWatch::judge(double t, std::span<const double> x, double step) {
   if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
   ++looked_;
-  std::vector<bool> unstable(x.size(), false);
-  for (const CoupledModes& group : modes_.find(jacobian_, near_)) {
-    double rate = 0;
-    for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
-    if (rate == 0) continue;
-    // The equilibrium is as far as the states would go back in a time constant of their growth.
-    const double part = std::min(1.0, rate * step);
-    double distance = 0, size = 0;
-    bool near = true;
-    for (const std::size_t i : group.states) {
-      distance = std::max(distance, change_[i] / part);
-      size = std::max(size, std::abs(x[i]));
-      near = near && change_[i] < part * near_distance(i, x[i]);
-    }
-    if (!near) continue;
-    distance = std::max(distance, driven_distance(t, x, group.states, rate));
-    const bool in_relative = size > 2 * distance;
-    double least = distance;
-    bool much = false, told = false;
-    for (const std::size_t i : group.states) {
-      unstable[i] = true;
-      distance_[i] = growth_[i] == 0 ? distance : std::min(distance_[i], distance);
-      growth_[i] += rate * (t - judged_);
-      much = much || growth_[i] > kGrown;
-      told = told || told_[i];
-      least = std::min(least, distance_[i]);
-    }
-    if (!much || told) continue;
-    if (leaves_at_once(x, group.states, rate, least)) continue;
-    // Near may be the part of a loop that the rest of it holds. That is asked ever more seldom.
-    const std::size_t first = group.states.front();
-    if (held_since_[first] > 0 && looked_ < 2 * held_since_[first]) {
-      for (const std::size_t i : group.states) growth_[i] = 0;
-      continue;
-    }
-    const CoupledModes closed = closed_modes(system_.pattern(), jacobian_, first);
-    const bool held = !closed.eigenvalues.empty() &&
-                      std::all_of(closed.eigenvalues.begin(), closed.eigenvalues.end(),
-                                  [&](const std::complex<double>& mode) { return mode.real() < rate / 2; });
-    if (held || (!system_.is_jacobian_exact() && !grows_by_differences(t, x, group.states, rate))) {
-      held_since_[first] = looked_;
-      for (const std::size_t i : group.states) growth_[i] = 0;
-      continue;
-    }
-    found_.push_back({t, group.states, least, in_relative});
-    for (const std::size_t i : group.states) told_[i] = true;
-  }
+  std::vector<bool> unstable(x.size(), false), near(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) near[i] = near_[i] && change_[i] < near_distance(i, x[i], false);
+  for (const CoupledModes& group : modes_.find(jacobian_, near_)) judge(group, t, x, step, true, unstable);
+  // What moves slowly beside them may not be near to zero, and yet of one group with them.
+  for (const CoupledModes& group : modes_.find(jacobian_, near)) judge(group, t, x, step, false, unstable);
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!unstable[i]) growth_[i] = 0;
   }
+}
+
+/// The same of states that act on each other, of an equilibrium at `zero` or elsewhere, unless they are found
+/// to be `unstable` before.
+void GrowthWatch::judge(const CoupledModes& group, double t, std::span<const double> x, double step,
+                        bool zero, std::vector<bool>& unstable) {
+  double rate = 0;
+  for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
+  if (rate == 0) return;
+  // The equilibrium is as far as the states would go back in a time constant of their growth.
+  const double part = std::min(1.0, rate * step);
+  double distance = 0, size = 0;
+  for (const std::size_t i : group.states) {
+    if (unstable[i] || !(change_[i] < part * near_distance(i, x[i], zero))) return;
+    distance = std::max(distance, change_[i] / part);
+    size = std::max(size, std::abs(x[i]));
+  }
+  distance = std::max(distance, driven_distance(t, x, group.states, rate));
+  const bool in_relative = size > 2 * distance;
+  if (zero && in_relative) return;
+  double least = distance;
+  bool much = false, told = false;
+  for (const std::size_t i : group.states) {
+    unstable[i] = true;
+    distance_[i] = growth_[i] == 0 ? distance : std::min(distance_[i], distance);
+    growth_[i] += rate * (t - judged_);
+    much = much || growth_[i] > kGrown;
+    told = told || told_[i];
+    least = std::min(least, distance_[i]);
+  }
+  if (!much || told || leaves_at_once(x, group.states, rate, least)) return;
+  // Near may be the part of a loop that the rest of it holds. That is asked ever more seldom.
+  const std::size_t first = group.states.front();
+  const auto let_go = [&] {
+    for (const std::size_t i : group.states) growth_[i] = 0;
+  };
+  if (held_since_[first] > 0 && looked_ < 2 * held_since_[first]) return let_go();
+  const CoupledModes closed = closed_modes(system_.pattern(), jacobian_, first);
+  const bool held = !closed.eigenvalues.empty() &&
+                    std::all_of(closed.eigenvalues.begin(), closed.eigenvalues.end(),
+                                [&](const std::complex<double>& mode) { return mode.real() < rate / 2; });
+  if (held || (!system_.is_jacobian_exact() && !grows_by_differences(t, x, group.states, rate))) {
+    held_since_[first] = looked_;
+    return let_go();
+  }
+  found_.push_back({t, group.states, least, in_relative});
+  for (const std::size_t i : group.states) told_[i] = true;
 }
 
 }  // namespace oblique::solve

@@ -50,7 +50,9 @@ class GrowthWatch {
   const std::vector<UnseenGrowth>& found() const { return found_; }
 
  private:
-  double near_distance(std::size_t i, double x) const;  ///< [machine unit]
+  double absolute_tolerance(std::size_t i) const;  ///< [machine unit]
+  /// [machine unit], of an equilibrium that is at `zero` or is not.
+  double near_distance(std::size_t i, double x, bool zero) const;
   double own_growth(std::size_t state) const;
   bool is_near_rest(std::span<const double> x);
   double driven_distance(double t, std::span<const double> x, const std::vector<std::size_t>& states,
@@ -58,6 +60,8 @@ class GrowthWatch {
   bool leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states, double rate,
                       double distance) const;
   void judge(double t, std::span<const double> x, double step);
+  void judge(const CoupledModes& group, double t, std::span<const double> x, double step, bool zero,
+             std::vector<bool>& unstable);
   bool grows_by_differences(double t, std::span<const double> x, const std::vector<std::size_t>& states,
                             double rate);
 
