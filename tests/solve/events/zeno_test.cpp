@@ -361,6 +361,33 @@ z = 0
   }
 }
 
+// An integrator fires at 0.8 and begins anew, ever faster by 0.002 % each time: its drive is φ′ for φ = 2000
+// (t + t²/20). Once a pulse resets it 5 µs after it has fired, and it goes on as before. A gate that joins
+// the two goes up and down at each firing, within an instant, and rests at its own level in between.
+TEST(Zeno, IsNotOnePulseBesideARhythm) {
+  const auto phase = [](double t) { return 2000 * (t + t * t / 20); };
+  const double pulse =
+      10 * (std::sqrt(1 + 700 * 0.8 / 2000 / 5) - 1) + 5e-6;  // behind the firing at φ = 700 · 0.8
+  for (const double delay : {50.0, pulse}) {
+    const Compiled made(fmt::format(R"(
+one = {{ type = "constant" }}
+k = {{ type = "ramp", initial = 1, slope = 0.1 }}
+x = {{ type = "integrator", in = ["k"], rate = 2000, set = "reset" }}
+c = {{ type = "comparator", in = ["x", "-0.8*one"] }}
+p = {{ type = "pulse-train", period = 100, width = 1e-6, delay = {} }}
+reset = {{ type = "maximum", x = "c", y = "p" }}
+n = {{ type = "counter", clock = "c" }}
+)",
+                                    delay));
+    const solve::Run run = run_of(made, {.until = 0.9});
+    const double end = phase(0.9);
+    const double fired = delay > 1 ? std::floor(end / 0.8)
+                                   : std::floor(phase(pulse) / 0.8) + std::floor((end - phase(pulse)) / 0.8);
+    EXPECT_EQ(row_values(run, "n.out").back(), fired) << delay;
+    EXPECT_TRUE(run.warnings.empty()) << delay;
+  }
+}
+
 // A ball of two integrators under g = 2, from 1 with the restitution e, lies at rest from (1 + e)/(1 − e) on.
 // No comparator turns over there any more, and it would fall through the floor: the run ends before, or says
 // that its last turns are hidden.

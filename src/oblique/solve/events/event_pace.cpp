@@ -21,7 +21,9 @@ std::optional<EventPace::Zeno> EventPace::come(double t, double span, double end
   const double now = t - last;
   shorter = now > 0 && interval && now < *interval ? shorter + 1 : 0;
   const double present = interval ? now / *interval : 1;
-  const double left = now * present / (1 - present);  // Σ now · presentᵏ
+  // One that comes soon for once (a pulse beside the rhythm) says nothing of the next ones.
+  const double next = shorter > 1 ? std::max(present, ratio) : present;
+  const double left = now * next / (1 - next);  // Σ now · nextᵏ
   if (shorter == 0) {
     steady = false;
     longer.reset();

@@ -8,9 +8,10 @@ namespace oblique::solve {
 /// How quickly an event comes again: ever faster is Zeno behaviour.
 ///
 /// Events that come sooner and sooner, often enough in a row, show Zeno behaviour where the times left to
-/// them, at the present ratio, are together a vanishing part of the run, and the ratio is not on its way to
-/// 1: events that crowd together and thin out again (two balls between a heavy one and a wall). That is seen
-/// over intervals that become shorter by a factor: 1 less the ratio is then not much smaller than it was.
+/// them, at the larger of the last two ratios, are together a vanishing part of the run, and the ratio is not
+/// on its way to 1: events that crowd together and thin out again (two balls between a heavy one and a wall).
+/// That is seen over intervals that become shorter by a factor: 1 less the ratio is then not much smaller
+/// than it was.
 struct EventPace {
   double last = 0;                 ///< when it came last [s]
   std::optional<double> interval;  ///< since it came before [s]; nothing where it came at once

@@ -134,7 +134,10 @@ void SwitchSettling::turn(std::size_t s, double position, double t) {
   Thresholds& thresholds = event_functions_.thresholds();
   Unrest& unrest = unrest_[s];
   const bool known = event_functions_.is_known(s);
-  const bool same_place = known ? t <= unrest.last : thresholds.excursion(s) < place_size(s);
+  // What is taken far away by others turns over and back at an instant, without an excursion between
+  // instants.
+  const bool taken_away = t > unrest.last && std::abs(event_functions_[s]) >= place_size(s);
+  const bool same_place = known ? t <= unrest.last : thresholds.excursion(s) < place_size(s) && !taken_away;
   if (!same_place) unrest.turns = 0;
   if (!known) watch_pace(s, t);
   unrest.last = t;
