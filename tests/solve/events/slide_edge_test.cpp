@@ -340,4 +340,19 @@ x = { type = "integrator", in = ["m"], initial = 0.5 }
   }
 }
 
+// c is driven through a gate: while that is closed it stands still at its limit, beside z, which goes on at
+// its own. Where the gate opens c is driven against its limit again, and does not pass it, not even by what a
+// slide drifts.
+TEST(Slide, BesideWhichSomethingIsDrivenAgainHoldsItToItsLimit) {
+  const Compiled made(R"toml(p = { type = "pulse-train", period = 0.5, width = 0.35 }
+m = { type = "multiplier", x = "p", y = "d" }
+d = { type = "summer", in = ["0.8*z", "-0.6*c"] }
+c = { type = "integrator", in = ["m"], rate = 0.9, initial = 0.5, limit = 0.7 }
+x = { type = "time-function", formula = "exp(-0.2*time)" }
+z = { type = "integrator", in = ["0.6*x"], initial = 0.35, limit = 0.74 }
+)toml");
+  const auto result = run_of(made, {.until = 7, .tolerance = 1e-10});
+  EXPECT_NEAR(row_values(result, "c").back(), 0.7, 1e-11);  // a tenth of the tolerance
+}
+
 }  // namespace oblique::solve

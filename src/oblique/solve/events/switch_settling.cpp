@@ -500,17 +500,25 @@ void SwitchSettling::begin_beside_slides(double t, std::span<const double> x) {
 
 void SwitchSettling::begin_after_events(const std::vector<std::size_t>& events, bool set_states, bool jumped,
                                         double t, std::span<const double> x) {
+  const auto is_acted_on = [&](std::uint32_t unit) {
+    return std::any_of(events.begin(), events.end(),
+                       [&](std::size_t event) { return independent_.acts(program_.events()[event], unit); });
+  };
   const Units& slides = slide_.units();
   Units kept;
   for (const std::vector<std::size_t>& part : independent_.parts_of(slides)) {
-    const bool is_acted_on = std::any_of(part.begin(), part.end(), [&](std::size_t place) {
-      return std::any_of(events.begin(), events.end(), [&](std::size_t event) {
-        return independent_.acts(program_.events()[event], slides[place]);
-      });
-    });
-    for (std::size_t k = 0; k < part.size() && !is_acted_on; ++k) kept.push_back(slides[part[k]]);
+    if (std::any_of(part.begin(), part.end(), [&](std::size_t place) { return is_acted_on(slides[place]); }))
+      continue;
+    for (const std::size_t place : part) kept.push_back(slides[place]);
   }
   begin(kept, t, x);
+  // What rests beside a slide that goes on may be driven away.
+  for (std::uint32_t s = 0; s < rested_.size(); ++s) {
+    const std::uint32_t unit = program_.switch_structure().unit[s];
+    if (!slide_.rests(s) || !is_acted_on(unit)) continue;
+    slide_.let_go(s);
+    decided_[unit] = false;
+  }
   set_ = set_ || set_states;
   if (!jumped) return;
   slid_ = slide_.units();
