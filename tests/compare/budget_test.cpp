@@ -48,7 +48,7 @@ TEST(ErrorBudget, OfACrank) {
       EXPECT_LT(entry.largest, 1e-9) << "the amplitude is held whatever its own error is";
       continue;
     }
-    EXPECT_NEAR(entry.largest, both, 1e-3 * both);  // of 73 rows one is within 2.5° of the axis
+    EXPECT_NEAR(entry.largest, both, 1e-3 * both);  // of 361 rows one is within half a degree of the axis
     ++of_coordinates;
   }
   EXPECT_EQ(of_coordinates, 2);
@@ -84,7 +84,7 @@ struct FourBar {
   std::pair<double, double> place(const diagram::FlatDiagram& changed, std::size_t row,
                                   double tolerance) const {
     solve::RunOptions how = solve::options_of(diagram.run);
-    how.samples = 73;
+    how.samples = 361;
     how.tolerance = tolerance;
     const solve::Run run = solve::run(network::Program(network::assemble(changed)), changed, how);
     return {run.trajectory.at(row, *run.trajectory.find("C.x")),

@@ -72,7 +72,7 @@ TEST(MonteCarlo, PercentilesAlongTheTurnAreThoseOfTheSortedRuns) {
   const MonteCarlo result = drawn(mechanism, options);
   const diagram::BlockLibrary library = diagram::BlockLibrary::shipped();  // which the flat diagram refers to
   const diagram::FlatDiagram flat = diagram::flatten(patch::patch(mechanism, {}), library);
-  ASSERT_EQ(result.drive.size(), 73U);
+  ASSERT_EQ(result.drive.size(), 361U);
   ASSERT_EQ(result.along.size(), 200U);
   std::vector<std::array<double, 2>> scatter;
   for (std::uint64_t run = 0; run < 200; ++run) {
@@ -83,9 +83,9 @@ TEST(MonteCarlo, PercentilesAlongTheTurnAreThoseOfTheSortedRuns) {
   }
   for (const int percent : {1, 25, 50, 97, 100}) {
     const std::vector<double> found = result.percentile_along(percent);
-    ASSERT_EQ(found.size(), 73U);
-    for (std::size_t row = 0; row < 73; ++row) {
-      const double angle = 2 * pi * static_cast<double>(row) / 72;
+    ASSERT_EQ(found.size(), 361U);
+    for (std::size_t row = 0; row < 361; ++row) {
+      const double angle = 2 * pi * static_cast<double>(row) / 360;
       EXPECT_NEAR(result.drive[row], angle, 1e-9);
       std::vector<double> sorted;
       for (const auto& [e, f] : scatter)
@@ -121,7 +121,7 @@ TEST(MonteCarlo, TellsTheYieldAndStopsWhereItIsKnown) {
   EXPECT_TRUE(std::equal(some.errors.begin(), some.errors.end(), all.errors.begin()));
 }
 
-/// The largest error of the four-bar over 73 positions when the summers of its patch err in their ratio:
+/// The largest error of the four-bar over 361 positions when the summers of its patch err in their ratio:
 /// those of B, of the vector B → D, of C and of M, each for x and y; exact triangles, in closed form.
 double four_bar_error(const std::array<double, 8>& e) {
   constexpr double kCouplerLength = 3.5, kRockerLength = 3, kFrameLength = 4;
@@ -148,8 +148,8 @@ double four_bar_error(const std::array<double, 8>& e) {
     return p;
   };
   double largest = 0;
-  for (int row = 0; row < 73; ++row) {
-    const double angle = 2 * pi * row / 72;
+  for (int row = 0; row < 361; ++row) {
+    const double angle = 2 * pi * row / 360;
     const Points exact = place(angle, [](const Vector& v, std::size_t) { return v; });
     const Points here = place(angle, scaled);
     largest =
@@ -328,8 +328,8 @@ TEST(MonteCarlo, LooksAtEachTurn) {
   options.scatters = {{"summer", "tolerance", 0.01, ""}};
   options.runs = 3;
   const MonteCarlo one = drawn(once, options), ten = drawn(often, options);
-  EXPECT_EQ(one.drive.size(), 73U);
-  EXPECT_EQ(ten.drive.size(), 721U);
+  EXPECT_EQ(one.drive.size(), 361U);
+  EXPECT_EQ(ten.drive.size(), 3601U);
   for (std::size_t run = 0; run < 3; ++run)
     EXPECT_NEAR(*ten.errors[run], *one.errors[run], 1e-5);  // to the solver's tolerance
 }

@@ -36,7 +36,7 @@ struct ErrorBudget {
 
 struct BudgetOptions {
   std::vector<diagram::BlockFigure> scatters;
-  int positions = 73;  ///< of a mechanism: rows over one turn, both ends included
+  int positions = 361;  ///< of a mechanism: rows over one turn, both ends included
   std::function<void(double fraction)> progress;
 };
 

@@ -20,9 +20,9 @@ struct MonteCarloOptions {
   std::vector<diagram::BlockFigure> scatters;
   int runs = 1000;
   std::uint64_t seed = 1;
-  std::uint64_t first_run = 0;       ///< number of the first run: with `runs` = 1 it repeats one
-  int threads = 1;                   ///< at most as many as there are runs; the result does not depend on it
-  int positions = 73;                ///< of a mechanism: rows over one turn, both ends included
+  std::uint64_t first_run = 0;  ///< number of the first run: with `runs` = 1 it repeats one
+  int threads = 1;              ///< at most as many as there are runs; the result does not depend on it
+  int positions = 361;  ///< of a mechanism: rows over one turn, both ends included, as those of a comparison
   std::optional<double> good_below;  ///< machines of a smaller error are good [length unit]
   /// With `good_below`: the runs end where the part of good machines is known within ± this, at whole
   /// hundreds of them, and at `runs` in any case.

@@ -85,20 +85,20 @@ TEST_F(ComparisonPlot, MonteCarloHasBandsAlongTheTurn) {
   }
   ASSERT_GT(top, 0);
   const std::vector<double> drive = along["drive"];
-  ASSERT_EQ(drive.size(), 73U);
+  ASSERT_EQ(drive.size(), 361U);
   const auto expect_at = [&](const Vector2d& point, const char* percent, std::size_t row) {
     const double error = along[percent][row];
     EXPECT_NEAR(point.x(), plot.min().x() + drive[row] / (2 * std::numbers::pi) * plot.sizes().x(), 0.01);
     EXPECT_NEAR(point.y(), plot.max().y() - error / top * plot.sizes().y(), 0.01) << percent;
   };
   const auto wide = svg.curve(1, 0), narrow = svg.curve(1, 1), median = svg.curve(1, 2);
-  ASSERT_EQ(wide.size(), 2 * 73U);
-  ASSERT_EQ(median.size(), 73U);
-  for (std::size_t row = 0; row < 73; ++row) {
+  ASSERT_EQ(wide.size(), 2 * 361U);
+  ASSERT_EQ(median.size(), 361U);
+  for (std::size_t row = 0; row < 361; ++row) {
     expect_at(wide[row], "97.5", row);
-    expect_at(wide[145 - row], "2.5", row);
+    expect_at(wide[721 - row], "2.5", row);
     expect_at(narrow[row], "75", row);
-    expect_at(narrow[145 - row], "25", row);
+    expect_at(narrow[721 - row], "25", row);
     expect_at(median[row], "50", row);
   }
 }
