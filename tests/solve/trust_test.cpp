@@ -111,6 +111,24 @@ c = { type = "comparator", in = ["s"] }
     EXPECT_FALSE(trusted(made, until, {}).trust->events_part) << until;
 }
 
+// At each turn of a triangle x stands on the level of the comparator that has turned it, to a rounding:
+// whether that goes back at this instant or 10⁻¹³ s later, one run tells and another one does not. Only the
+// first thousand lines of the events are kept; there are 1100.
+TEST(Trust, TakesWhatARoundingLeavesUntoldForNoOtherEvent) {
+  const Compiled made(R"toml(one = { type = "constant" }
+above = { type = "comparator", in = ["x", "-0.1*one"] }
+below = { type = "comparator", in = ["-x", "-0.1*one"] }
+f = { type = "flip-flop", set = "above", reset = "below" }
+x = { type = "integrator", in = ["one", "-2*f.out"], initial = 0.05 }
+)toml",
+                      "[outputs]\nx = \"x\"\n");
+  for (const double until : {20.0, 100.037}) {
+    const oblique::solve::Run result = trusted(made, until, {});
+    EXPECT_FALSE(result.trust->events_part) << until;
+    EXPECT_LT(result.trust->event_shift, 1e-9) << until;
+  }
+}
+
 // A switch that only the coarser of two runs reaches: x = sin t rises to 1, and the threshold lies 1e-7 above
 // it. At a tolerance of 1e-4 x passes it in one run of the two or in none; where it does, the runs part.
 TEST(Trust, TellsWhereEventsPart) {

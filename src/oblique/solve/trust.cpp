@@ -7,7 +7,6 @@
 #include <functional>
 
 #include <oblique/network/program/program.h>
-#include <oblique/solve/events/time_resolution.h>
 #include <oblique/solve/run.h>
 #include <oblique/solve/solve_error.h>
 
@@ -27,9 +26,23 @@ struct Between {
   double from, to;  ///< [s]
 };
 
+/// Whether two events come at one instant, or so nearly that no run can tell.
+bool at_once(double before, double after) {
+  constexpr double kAtOnce = 1e-12;  // of the time
+  return after - before <= kAtOnce * std::abs(after);
+}
+
 /// Whether an event comes at the instant of the one before it.
 bool comes_along(const std::vector<EventRecord>& events, std::size_t k) {
-  return k > 0 && k < events.size() && events[k].time - events[k - 1].time <= time_resolution(events[k].time);
+  return k > 0 && k < events.size() && at_once(events[k - 1].time, events[k].time);
+}
+
+/// At how many instants events come.
+std::size_t instants(const std::vector<double>& times) {
+  std::size_t found = times.empty() ? 0 : 1;
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (!at_once(times[k - 1], times[k])) ++found;
+  return found;
 }
 
 /// Pairs the events of two runs. Of two comparisons with one event function a run may tell of either, or of
@@ -50,13 +63,15 @@ std::vector<Between> pair_events(const Run& a, const Run& b, Trust& trust) {
       break;
     }
   }
-  const bool all_told = i == a.events.size() && j == b.events.size();
-  const auto untold = [](const Run& run) { return run.event_count - static_cast<long>(run.events.size()); };
-  if (all_told && untold(a) == untold(b)) return pairs;
+  // Of many events only the first are listed, and all instants of them.
+  const auto is_out = [](const Run& run, std::size_t k) { return k == run.events.size(); };
+  const auto is_cut = [](const Run& run) { return run.event_count > static_cast<long>(run.events.size()); };
+  const bool all_told = (is_out(a, i) && (is_out(b, j) || is_cut(a))) || (is_out(b, j) && is_cut(b));
+  if (all_told && instants(a.event_times) == instants(b.event_times)) return pairs;
   double part = std::numeric_limits<double>::infinity();
-  if (i < a.events.size()) part = a.events[i].time;
-  if (j < b.events.size()) part = std::min(part, b.events[j].time);
-  if (all_told) part = a.events.back().time;  // the lists end there, and their counts differ
+  if (!is_out(a, i)) part = a.events[i].time;
+  if (!is_out(b, j)) part = std::min(part, b.events[j].time);
+  if (all_told) part = a.events.back().time;  // the lists end there, and their instants differ
   trust.events_part = std::min(part, trust.events_part.value_or(part));
   return pairs;
 }

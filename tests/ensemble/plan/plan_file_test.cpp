@@ -110,10 +110,10 @@ TEST(PlanFile, KeepsSeedsOf64Bits) {
   }
   // A number of TOML beyond that would be another one.
   EXPECT_THAT(
-      finding_with("diagram = \"x\"\nseed = 9007199254740995\n[vary]\na = 1\n"),
+      finding_with("diagram = \"x\"\nseed = 9007199254740993\n[vary]\na = 1\n"),
       HasSubstr(
           "p.toml:3:8: 'seed' of the plan is no whole number that can be told from its neighbours; "
-          "expected a whole number from 0 to 9007199254740992, or up to 18446744073709551615 as a text"));
+          "expected a whole number from 0 to 9007199254740991, or up to 18446744073709551615 as a text"));
   for (const char* seed : {"-1", "1.5", "\"\"", "\"1x\"", "\"18446744073709551616\"", "true"})
     EXPECT_THAT(finding_with("diagram = \"x\"\nseed = " + std::string(seed) + "\n[vary]\na = 1\n"),
                 HasSubstr("p.toml:3:8: 'seed' of the plan is no whole number"));
@@ -169,7 +169,7 @@ TEST(PlanFile, SaysWhatIsWrong) {
   const std::string vary = "\n[vary]\na = 1\n";
   EXPECT_THAT(
       finding_with("diagram = \"x\"\nruns = 0" + vary),
-      HasSubstr("p.toml:3:8: 'runs' of the plan is 0; expected a whole number from 1 to 9007199254740992"));
+      HasSubstr("p.toml:3:8: 'runs' of the plan is 0; expected a whole number from 1 to 9007199254740991"));
   EXPECT_THAT(finding_with("diagram = \"x\"\nruns = \"many\"" + vary),
               HasSubstr("p.toml:3:9: 'runs' of the plan"));
   EXPECT_THAT(finding_with("diagram = \"x\"\nsamples = 1.5" + vary),

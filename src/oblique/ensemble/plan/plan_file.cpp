@@ -15,8 +15,8 @@
 namespace oblique::ensemble {
 namespace {
 
-/// The largest whole number up to which a double holds every one.
-constexpr double kLargestWhole = 9'007'199'254'740'992.0;
+/// The largest whole number that a double holds and no other one rounds to.
+constexpr double kLargestWhole = 9'007'199'254'740'991.0;
 /// As a diagram's own rows.
 constexpr double kMostSamples = 1e7;
 /// A factor of two is no tolerance any more.
