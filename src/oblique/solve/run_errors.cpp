@@ -134,6 +134,18 @@ SolveError run_error(const network::Program& program, const SolverFailure& failu
            {"look for a positive feedback, a divisor that passes zero or a servo loop whose residual falls "
             "with its output; or end the run earlier with ",
             text::Setting{"until"}}}};
+    case Kind::no_derivative:
+      return {SolveError::Kind::blow_up,
+              failure.time,
+              {{file, {}},
+               fmt::format(
+                   "{}: an equation has a value there, but no derivative by a parameter or by a state that "
+                   "depends on one, so that the sensitivities have none (a power of zero, or the edge of a "
+                   "branch)",
+                   where),
+               {},
+               {"ask for no sensitivities, for those by other parameters, or end the run earlier with ",
+                text::Setting{"until"}}}};
     case Kind::step_budget: {
       const double last_step = solver.statistics().last_step;
       constexpr double kStuck = 1e-10;  // of the time: no number of steps leads on

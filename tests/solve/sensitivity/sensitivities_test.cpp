@@ -19,6 +19,7 @@ namespace {
 
 using testing::Compiled;
 using ::testing::HasSubstr;
+using testing::run_of;
 
 oblique::solve::Run differentiated(const Compiled& made, std::vector<std::string> names, double until = 2,
                                    double tolerance = 1e-9) {
@@ -368,6 +369,26 @@ TEST(Sensitivities, ThatGrowBeyondAllNumbersAreToldSo) {
       "x = { type = \"integrator\", in = \"40*s\", initial = 0 }\n");
   EXPECT_THAT(testing::message_of<text::Error>([&] { differentiated(made, {"x.initial"}, 20); }),
               HasSubstr(": that of 'x' has grown to "));
+}
+
+// The power of a state that passes zero, and that of a magnitude of the time, have values there, but what
+// they depend on has a logarithm in its derivative: it is not the solution that ends.
+TEST(Sensitivities, OfWhatHasAValueAndNoDerivativeAreRefusedAsThat) {
+  const char* const kPlain =
+      "[outputs]\nout = { doc = \"x\" }\n[parameters]\np = { default = 2.3, unit = \"1\" }\n";
+  for (const char* const equations :
+       {"[equations]\nout = \"abs(time - 1)^p\"\n",
+        "[equations]\n\"der(out)\" = \"-abs(out)^p*sign(out) - 0.1\"\n[start]\nout = \"0.2\"\n"}) {
+    const diagram::BlockLibrary library =
+        testing::shipped_blocks_and("power", "summary = \"x\"\n" + std::string(kPlain) + equations);
+    const Compiled made("x = { type = \"power\" }\ni = { type = \"integrator\", in = \"x\" }\n", "", library);
+    EXPECT_THAT(
+        refusal(made, "x.p"),
+        HasSubstr("an equation has a value there, but no derivative by a parameter or by a state that "
+                  "depends on one, so that the sensitivities have none (a power of zero, or the edge of a "
+                  "branch)"));
+    EXPECT_TRUE(run_of(made, {.until = 2}).warnings.empty());
+  }
 }
 
 // Of the shipped diagrams, by their first parameters: central differences of whole runs, which err by about

@@ -140,7 +140,9 @@ int CvodesMemory::evaluate_sensitivity(int, sunrealtype t, N_Vector x, N_Vector,
     self.saw_refusal = true;
     return 1;
   }
-  return all_finite(values, self.system->size()) ? 0 : 1;
+  if (all_finite(values, self.system->size())) return 0;
+  self.saw_no_derivative = true;
+  return 1;
 }
 
 /// The time of CVODES' own clock that is t, within its last step: the end of the step to the bit, and no
@@ -218,6 +220,10 @@ SolverFailure CvodesMemory::failure(int code) const {
   if (too_short) failure.kind = saw_refusal ? SolverFailure::Kind::no_value : SolverFailure::Kind::small_step;
   if (saw_not_finite && failure.kind != SolverFailure::Kind::other)
     failure.kind = SolverFailure::Kind::not_finite;
+  const bool of_sensitivities = code == CV_SRHSFUNC_FAIL || code == CV_FIRST_SRHSFUNC_ERR ||
+                                code == CV_REPTD_SRHSFUNC_ERR || code == CV_UNREC_SRHSFUNC_ERR;
+  if (of_sensitivities || (too_short && saw_no_derivative && !saw_refusal && !saw_not_finite))
+    failure.kind = SolverFailure::Kind::no_derivative;
   return failure;
 }
 

@@ -60,8 +60,9 @@ struct CvodesMemory {
   std::int64_t steps = 0;
   SolverStatistics before_restart;  ///< CVODES counts from its last start
   SmallSteps small_steps;
-  bool saw_refusal = false;  ///< these two since the last step that was not small
+  bool saw_refusal = false;  ///< these since the last step that was not small
   bool saw_not_finite = false;
+  bool saw_no_derivative = false;  ///< of the sensitivities alone
 
   Owned<SUNContext, ContextDeleter> context;
   Owned<N_Vector, VectorDeleter> states;

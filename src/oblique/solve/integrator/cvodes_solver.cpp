@@ -67,7 +67,7 @@ void CvodesSolver::limit_step(double longest) {
 double CvodesSolver::step() {
   CvodesMemory& m = *memory_;
   if (m.steps >= m.max_steps) throw SolverFailure{SolverFailure::Kind::step_budget, m.t, 0};
-  if (!m.small_steps.any()) m.saw_refusal = m.saw_not_finite = false;
+  if (!m.small_steps.any()) m.saw_refusal = m.saw_not_finite = m.saw_no_derivative = false;
   double before = m.clock;
   int code = m.take_step(1);
   // Newton's iteration leaves the state of a servo loop within a tolerance that shrinks where it passes zero,

@@ -26,12 +26,13 @@ struct SolverSettings {
 /// Why a solver could not go on.
 struct SolverFailure {
   enum class Kind {
-    not_finite,   ///< dx/dt or a state is not a number
-    no_value,     ///< the system refused to give dx/dt, however short the step
-    small_step,   ///< the step fell below what the time can resolve
-    step_budget,  ///< `max_steps` are used up
-    interrupted,  ///< the system is to end
-    other,        ///< anything else CVODES reports
+    not_finite,     ///< dx/dt or a state is not a number
+    no_value,       ///< the system refused to give dx/dt, however short the step
+    no_derivative,  ///< the sensitivities have no value, though dx/dt has one
+    small_step,     ///< the step fell below what the time can resolve
+    step_budget,    ///< `max_steps` are used up
+    interrupted,    ///< the system is to end
+    other,          ///< anything else CVODES reports
   };
   Kind kind = Kind::other;
   double time = 0;  ///< [s] reached
