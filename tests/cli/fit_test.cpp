@@ -79,6 +79,12 @@ TEST_F(FitVerb, EndsWithOneAndWritesNothingWhereNothingIsNearer) {
   EXPECT_FALSE(exists("new.toml"));
 }
 
+TEST_F(FitVerb, SaysThatTheGivenOneLiesOutsideTheBounds) {
+  const Outcome outcome = oblique("fit six-bar.toml --path circle.csv --free AB=70..78");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.out, ContainsRegex("AB +80 +80 +70 +78 +unchanged, outside its bounds\n"));
+}
+
 TEST_F(FitVerb, EndsWithOneWhereNothingTurns) {
   const Outcome outcome = oblique("fit six-bar.toml --path circle.csv --free AB=300..310 -o new.toml");
   EXPECT_EQ(outcome.status, 1);

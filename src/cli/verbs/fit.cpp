@@ -25,7 +25,9 @@ std::string table_of_dimensions(const synthesis::Fit& fit, const std::string& un
   report::Table table({fmt::format("dimension [{}]", unit), "old", "new", "lower bound", "upper bound", ""});
   for (const synthesis::FittedDimension& d : fit.dimensions) {
     std::string remark = d.changed() ? "" : "unchanged";
-    if (d.at_bound()) {
+    if (d.after < d.lower || d.after > d.upper) {  // as given
+      remark += ", outside its bounds";
+    } else if (d.at_bound()) {
       remark += fmt::format("{}at its {} bound", remark.empty() ? "" : ", ",
                             d.after <= d.lower ? "lower" : "upper");
     }
