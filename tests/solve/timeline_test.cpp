@@ -98,6 +98,28 @@ TEST(Timeline, StartsThatFollowFromEachOtherAreToldOf) {
   }
 }
 
+// The amplifiers between two stores are to rest before the next store takes its value from them, each with an
+// offset: the values go on for ever, by so much each time.
+TEST(Timeline, StartsThatFollowFromEachOtherThroughServoLoopsAreToldOf) {
+  const Compiled made(R"(off = { type = "constant", value = 0 }
+minus_next = { type = "summer", in = ["s", "10*off"] }
+next = { type = "inverter", in = "minus_next" }
+ahead = { type = "integrator", start = "next" }
+s = { type = "integrator", start = "ahead" }
+)",
+                      R"([machine]
+profile = "tr-10"
+inverting = true
+[groups]
+ahead = { blocks = ["ahead"], initial = "off" }
+s = { blocks = ["s"], initial = "off" }
+)");
+  EXPECT_THAT(
+      message_of<SolveError>([&] { run_of(made, {.until = 1}); }),
+      HasSubstr("the initial values of 'ahead', 's' follow from each other in a circle; expected initial "
+                "values that agree"));
+}
+
 TEST(Timeline, AStartThatIsNoFiniteNumberIsNoCircle) {
   const Compiled made(
       "s = { type = \"time-function\", formula = \"1/time\" }\n"

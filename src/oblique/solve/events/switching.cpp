@@ -77,16 +77,18 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
     }
   };
   // What has come to rest may be what states start from.
+  std::vector<std::size_t> moving;
   const auto starts_move = [&] {
     const std::vector<double> before = x;
     take();
     for (std::size_t i = 0; i < x.size(); ++i) {
-      if (std::abs(x[i] - before[i]) > kSameStart * (1 + std::abs(x[i]))) return true;
+      if (std::abs(x[i] - before[i]) > kSameStart * (1 + std::abs(x[i]))) moving.push_back(i);
     }
-    x = before;
-    return false;
+    if (moving.empty()) x = before;
+    return !moving.empty();
   };
   const auto goes_on = [&] {
+    moving.clear();
     settling_.begin();
     if (takes) take();
     if (active() && settling_.settle(t, x) && takes) return true;
@@ -121,8 +123,10 @@ void Switching::start(double t, std::vector<double>& x, const std::function<void
       // Loops may lead the events back that have led them on: they come last then. Tables may lead a loop in
       // a circle that begins where others did not stand yet.
       if (std::exchange(last, true) && (std::exchange(has_gone, true) || !loop_jumps_.go(t, x)) &&
-          std::exchange(several, true))
+          std::exchange(several, true)) {
+        if (!moving.empty()) throw starts_in_circle(program_, moving, t, file_);
         throw log_.endless("the start does not settle", t);
+      }
       circle = {};
       round = 0;
     }

@@ -14,6 +14,28 @@
 #include <oblique/solve/solve_error.h>
 
 namespace oblique::solve {
+namespace {
+
+constexpr const char* kCut =
+    "give one of them a fixed 'initial', or cut the circle at the start with an electronic-switch";
+
+/// "the initial values of 'a' and 'b' follow from each other in a circle"
+std::string circle_of(const network::Program& program, const std::vector<std::size_t>& states) {
+  std::vector<std::string> quoted;
+  quoted.reserve(states.size());
+  for (const std::size_t i : states) quoted.push_back(fmt::format("'{}'", program.states()[i].name));
+  return fmt::format("the initial values of {} follow from each other in a circle",
+                     shortened(std::move(quoted)));
+}
+
+}  // namespace
+
+SolveError starts_in_circle(const network::Program& program, const std::vector<std::size_t>& states, double t,
+                            const std::string& file) {
+  return {SolveError::Kind::no_rest,
+          t,
+          {{file, {}}, circle_of(program, states), "initial values that agree", kCut}};
+}
 
 void take_starts(const network::Program& program, network::Workspace& workspace, double t,
                  std::vector<double>& x, EventLog& log, const std::string& file) {
@@ -74,19 +96,11 @@ void take_starts(const network::Program& program, network::Workspace& workspace,
   }
   if (circle.empty()) return;
   std::sort(circle.begin(), circle.end());
-  std::vector<std::string> quoted;
-  quoted.reserve(circle.size());
-  for (const std::size_t i : circle) quoted.push_back(fmt::format("'{}'", program.states()[i].name));
-  const std::string told = fmt::format("the initial values of {} follow from each other in a circle",
-                                       shortened(std::move(quoted)));
-  constexpr const char* kCut =
-      "give one of them a fixed 'initial', or cut the circle at the start with an electronic-switch";
-  if (changes)
-    throw SolveError(SolveError::Kind::no_rest, t, {{file, {}}, told, "initial values that agree", kCut});
+  if (changes) throw starts_in_circle(program, circle, t, file);
   const network::State& first = program.states()[circle.front()];
   log.warn({{file, {}},
-            fmt::format("{}: the run begins where they agree, at {} = {:.6g}", told, first.name,
-                        x[circle.front()]),
+            fmt::format("{}: the run begins where they agree, at {} = {:.6g}", circle_of(program, circle),
+                        first.name, x[circle.front()]),
             {},
             kCut});
 }

@@ -8,6 +8,7 @@
 #include <oblique/network/program/program.h>
 #include <oblique/solve/events/event_log.h>
 #include <oblique/solve/readings/event_functions.h>
+#include <oblique/solve/solve_error.h>
 
 // How a run with switches starts. Not installed.
 namespace oblique::solve {
@@ -17,6 +18,10 @@ namespace oblique::solve {
 /// diagram in messages. Throws SolveError.
 void take_starts(const network::Program& program, network::Workspace& workspace, double t,
                  std::vector<double>& x, EventLog& log, const std::string& file);
+
+/// The error of initial values of `states` that follow from each other and do not agree.
+SolveError starts_in_circle(const network::Program& program, const std::vector<std::size_t>& states, double t,
+                            const std::string& file);
 
 /// Brings servo loops to rest with all limits let loose, and tells whether they rest there, within them; else
 /// nothing has changed. An amplifier's guess may be far off only because the elements in its loop have not
