@@ -30,6 +30,11 @@ TEST(RunText, CountsTheEventsThatWereNotKept) {
   const std::vector<solve::EventRecord> events{{0.125, "'a' closes"}, {2, "'a' opens"}};
   EXPECT_EQ(events_text(events, 2), "t [s]       event\n0.125  'a' closes\n    2   'a' opens\n");
   EXPECT_EQ(events_text(events, 5), events_text(events, 2) + "(3 more)\n");
+  // The condition of a delay line is a sum of 24 comparisons: one such would make all lines so long.
+  const std::string end = std::string(44, 'y') + "ü";
+  EXPECT_EQ(events_text({{1, "ä" + std::string(43, 'x') + std::string(300, '+') + end}}, 1),
+            "t [s]" + std::string(88, ' ') + "event\n    1  ä" + std::string(43, 'x') + " … " +
+                end.substr(1) + "\n");
 }
 
 TEST(RunText, NamesStatesAndWhatIsBroughtToRestInAStaticTest) {

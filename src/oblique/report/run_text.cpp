@@ -4,6 +4,22 @@
 #include <fmt/format.h>
 
 namespace oblique::report {
+namespace {
+
+/// What lies in the middle of a long text, as the sum of a comparison, left out.
+std::string without_middle(const std::string& text) {
+  constexpr std::size_t kMost = 100, kAtEach = 45;  // bytes
+  if (text.size() <= kMost) return text;
+  const auto is_within = [&](std::size_t at) {
+    return (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+  };
+  std::size_t head = kAtEach, tail = text.size() - kAtEach;
+  while (head > 0 && is_within(head)) --head;
+  while (tail < text.size() && is_within(tail)) ++tail;
+  return text.substr(0, head) + " … " + text.substr(tail);
+}
+
+}  // namespace
 
 Table rows_of(const solve::Trajectory& trajectory, std::size_t columns) {
   constexpr std::size_t kMostRows = 21;
@@ -24,7 +40,8 @@ Table rows_of(const solve::Trajectory& trajectory, std::size_t columns) {
 
 std::string events_text(const std::vector<solve::EventRecord>& events, long count) {
   Table table({"t [s]", "event"});
-  for (const solve::EventRecord& event : events) table.add({fmt::format("{:.12g}", event.time), event.what});
+  for (const solve::EventRecord& event : events)
+    table.add({fmt::format("{:.12g}", event.time), without_middle(event.what)});
   std::string text = table.text();
   if (count > static_cast<long>(events.size()))
     text += fmt::format("({} more)\n", count - static_cast<long>(events.size()));
