@@ -82,6 +82,24 @@ x = { type = "integrator", in = "ax", initial = 1 }
                 10 * tolerance);
 }
 
+// As near to an equilibrium that is not zero, no absolute error decides, and nothing is run anew as finely as
+// can be.
+TEST(UnseenGrowth, IsNoneBesideAnEquilibriumThatIsNotZero) {
+  const auto steps = [](double distance) {
+    return run_of(Compiled(fmt::format(R"(
+half = {{ type = "constant", value = 0.5 }}
+a = {{ type = "summer", in = ["x", "-half"] }}
+b = {{ type = "summer", in = ["3*half", "-x"] }}
+ab = {{ type = "multiplier", in = ["a", "b"] }}
+x = {{ type = "integrator", in = ["ab"], initial = {} }}
+)",
+                                       0.5 + distance)),
+                  {.until = 20})
+        .statistics.steps;
+  };
+  EXPECT_LT(steps(1e-5), 2 * steps(0.1));
+}
+
 // Which takes more steps, and is told of where there are not so many.
 TEST(UnseenGrowth, IsToldWhereTheSecondTryTakesTooManySteps) {
   const oblique::solve::Run result = run_of(Compiled(logistic("1e-20")), {.until = 60, .max_steps = 500});

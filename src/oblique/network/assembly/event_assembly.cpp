@@ -22,7 +22,6 @@ std::vector<Event::Action> actions_of(Assembly& a, std::size_t block,
     done.index = discrete_state ? a.first_discrete_state[block] + static_cast<std::uint32_t>(*discrete_state)
                                 : a.quantities[a.quantity_of(block, rule.target)].variable_index;
     done.value = a.built(block, rule.value, rule.place, "an event's '" + rule.target + "'");
-    done.is_number = a.network.graph[done.value].op == Op::constant;
     actions.push_back(done);
   }
   return actions;

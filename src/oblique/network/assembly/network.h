@@ -63,7 +63,6 @@ struct Event {
     bool on_state = false;  ///< else on a discrete state
     std::uint32_t index = 0;
     NodeId value = 0;
-    bool is_number = false;  ///< the value is a constant
   };
   std::string block;  ///< path
   NodeId condition = 0;

@@ -515,9 +515,7 @@ void SwitchSettling::begin_after_events(const std::vector<std::size_t>& events, 
   // What rests beside a slide that goes on may be driven away.
   for (std::uint32_t s = 0; s < rested_.size(); ++s) {
     const std::uint32_t unit = program_.switch_structure().unit[s];
-    if (!slide_.rests(s) || !is_acted_on(unit)) continue;
-    slide_.let_go(s);
-    decided_[unit] = false;
+    if (slide_.rests(s) && is_acted_on(unit)) decided_[unit] = false;
   }
   set_ = set_ || set_states;
   if (!jumped) return;

@@ -65,8 +65,8 @@ std::vector<UncertainReadings::Put> UncertainReadings::as_before(std::span<const
   return changed;
 }
 
-/// Numbers that events put at a time of their own (an edge of a pulse train) and that change something, of
-/// the other blocks: what comes at the same instant does not read them yet.
+/// What events of the other blocks put at a time of their own (an edge of a pulse train): what comes at the
+/// same instant does not read it yet.
 std::vector<UncertainReadings::Put> UncertainReadings::as_after(std::span<const std::size_t> events,
                                                                 std::span<const double> values,
                                                                 const std::string& block) const {
@@ -76,7 +76,7 @@ std::vector<UncertainReadings::Put> UncertainReadings::as_after(std::span<const 
     const network::Event& event = program_.events()[e];
     for (const network::Event::Action& action : event.actions) {
       const double value = values[k++];
-      if (of_time_[e] && event.block != block && action.is_number && !action.on_state &&
+      if (of_time_[e] && event.block != block && !action.on_state &&
           value != workspace_.discrete_state(action.index))
         puts.push_back({action.index, value});
     }
@@ -96,10 +96,8 @@ std::vector<UncertainReadings::Put> UncertainReadings::led_to_by(std::vector<Put
   const bool is_there = program_.event_functions(t, x.data(), then.data(), workspace_).has_value();
   workspace_.load_discrete_states(discrete_states);
   for (std::uint32_t s = 0; is_there && s < now.size(); ++s) {
-    const double position = then[s] > 0 ? 1 : 0;
-    const std::uint32_t discrete_state = program_.switches()[s].discrete_state;
-    if (std::abs(then[s] - now[s]) > kMatters && position != workspace_.discrete_state(discrete_state))
-      puts.push_back({discrete_state, position});
+    if ((then[s] > 0) != (now[s] > 0))
+      puts.push_back({program_.switches()[s].discrete_state, then[s] > 0 ? 1.0 : 0.0});
   }
   return puts;
 }
