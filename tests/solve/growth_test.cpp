@@ -69,6 +69,73 @@ y = {{ type = "integrator", in = ["gy", "2*x"] }}
   }
 }
 
+constexpr diagram::IntegrationMethod kMethods[] = {
+    diagram::IntegrationMethod::adams, diagram::IntegrationMethod::bdf, diagram::IntegrationMethod::rodas};
+
+// Autocatalysis, a′ = −ab, b′ = ab from (1, b₀): b is a logistic. What b grows by is a state of the size of
+// one that acts back on it, and moves as little. Some 5000 tolerances where that hides it.
+TEST(UnseenGrowth, IsSeenBesideALargeState) {
+  for (const double b0 : {1e-7, 1e-6, 1e-5}) {
+    const Compiled made(fmt::format(R"(
+ab = {{ type = "multiplier", in = ["a", "b"] }}
+a = {{ type = "integrator", in = ["-ab"], initial = 1 }}
+b = {{ type = "integrator", in = ["ab"], initial = {} }}
+)",
+                                    b0));
+    for (const auto method : kMethods) {
+      for (const double tolerance : {1e-4, 1e-8}) {
+        const oblique::solve::Run run = run_of(made, {.until = 30, .tolerance = tolerance, .method = method});
+        const auto t = row_values(run, "t"), b = row_values(run, "b");
+        for (std::size_t k = 0; k < t.size(); ++k)
+          ASSERT_NEAR(b[k], (1 + b0) / (1 + std::exp(-(1 + b0) * t[k]) / b0), 100 * tolerance) << b0;
+      }
+    }
+  }
+}
+
+// Hopf's normal form that turns with 100 rad/s, thirty times while it grows by e²: 50 000 tolerances
+// otherwise.
+TEST(UnseenGrowth, IsSeenInAFastOscillation) {
+  const Compiled made(R"(
+xx = { type = "squarer", in = "x" }
+yy = { type = "squarer", in = "y" }
+g = { type = "summer", in = ["one", "-xx", "-yy"] }
+one = { type = "constant" }
+gx = { type = "multiplier", in = ["g", "x"] }
+gy = { type = "multiplier", in = ["g", "y"] }
+x = { type = "integrator", in = ["gx", "-100*y"], initial = 1e-6 }
+y = { type = "integrator", in = ["gy", "100*x"] }
+)");
+  const oblique::solve::Run run = run_of(made, {.until = 20, .tolerance = 1e-8});
+  const auto t = row_values(run, "t"), x = row_values(run, "x");
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    const double r = 1 / std::sqrt(1 + (1e12 - 1) * std::exp(-2 * t[k]));
+    ASSERT_NEAR(x[k], r * std::cos(100 * t[k]), 1e-6);  // 100 tolerances
+  }
+}
+
+// A swing, x″ = −(1 + 0.8 cos 2t) x: at nearly all instants no mode grows, and yet x does from turn to turn.
+// It is linear: from 1 it is the same, times 1e9. Half a million tolerances otherwise.
+TEST(UnseenGrowth, IsSeenWhereNoModeGrows) {
+  const auto swing = [](double start) {
+    return Compiled(fmt::format(R"toml(
+k = {{ type = "time-function", formula = "1 + 0.8*cos(2*time)" }}
+kx = {{ type = "multiplier", in = ["k", "x"] }}
+v = {{ type = "integrator", in = ["-kx"] }}
+x = {{ type = "integrator", in = ["v"], initial = {} }}
+)toml",
+                                start));
+  };
+  const auto truth = row_values(run_of(swing(1), {.until = 103.6, .tolerance = 1e-12}), "x");
+  for (const auto method : kMethods) {
+    for (const double tolerance : {1e-6, 1e-8}) {
+      const auto x =
+          row_values(run_of(swing(1e-9), {.until = 103.6, .tolerance = tolerance, .method = method}), "x");
+      for (std::size_t k = 0; k < x.size(); ++k) ASSERT_NEAR(x[k], 1e-9 * truth[k], 100 * tolerance);
+    }
+  }
+}
+
 // x′ = (t − 5.5) x falls from 1 to 2.7e-7 and is 1 again at t = 11. Ten tolerances: half of the first part is
 // lost where its absolute errors are not seen.
 TEST(UnseenGrowth, IsSeenBehindADecay) {

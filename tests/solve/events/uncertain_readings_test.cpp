@@ -110,7 +110,7 @@ u = { type = "pulse-train", period = 1, width = 0.3, delay = 0.45 })"),
 
 // Events of one block see the values before them, as it is written.
 TEST(UncertainReadings, OfWhatABlockSetsItselfAreNotToldOf) {
-  const Compiled made("p = { type = \"pair\" }\n", "", testing::shipped_blocks_and("pair", R"(summary = "x"
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("pair", R"(summary = "x"
 [outputs]
 out = { doc = "x" }
 [memories]
@@ -124,21 +124,11 @@ set = { a = 1 }
 [[events]]
 when = "time >= 1"
 set = { b = "a" }
-)"));
+)");
+  const Compiled made("p = { type = \"pair\" }\n", "", library);
   const oblique::solve::Run run = run_of(made, {.until = 2});
   EXPECT_TRUE(run.warnings.empty());
   EXPECT_EQ(row_values(run, "p").back(), 0);
-}
-
-// A line hands on in the middle between two clock times, where one of half its clock samples.
-TEST(UncertainReadings, OfADelayLineThatSamplesAsAnotherHandsOnAreToldOf) {
-  EXPECT_THAT(
-      warnings_of(R"(
-u = { type = "ramp" }
-line = { type = "delay-line", in = "u", delay = 0.5, stages = 1 }
-quick = { type = "delay-line", in = "line", delay = 0.25, stages = 1 })"),
-      ElementsAre("'quick' sets what it keeps by a signal that jumps at the same instant: at t = 0.75 s "
-                  "it takes 0, from before the jump; after it that is 0.5"));
 }
 
 // x' = −2 sign x + w slides along x = 0, and the relay's mean is w/2: a store that samples it takes ±1.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -15,6 +16,8 @@ namespace {
 /// absolute ones, which a finer run can make smaller alone, are all made in the first of the growth: by BDF
 /// they come to some 5 of its tolerances.
 constexpr double kNear = 1e-4, kNearZero = 2e-2;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// In powers of e: what has grown more is judged. Less is the growth of every step that turns away.
 constexpr double kGrown = 2;
@@ -41,7 +44,10 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, doub
       modes_(system.pattern()),
       growth_(system.size()),
       distance_(system.size()),
+      least_(system.size(), kInfinity),
+      acts_with_(system.size()),
       near_(system.size()),
+      near_zero_(system.size()),
       told_(system.size()),
       stood_(system.size()),
       held_since_(system.size()) {}
@@ -52,7 +58,8 @@ void GrowthWatch::restart(double t, std::span<const double> x) {
   for (std::size_t i = 0; i < before_.size() && t > time_; ++i) stood_[i] = x[i] == before_[i];
   // Where segments are short, growth goes on through many of them: but for that of states that have jumped.
   for (std::size_t i = 0; i < before_.size(); ++i) {
-    if (!(std::abs(x[i] - before_[i]) < near_distance(i, x[i], true))) growth_[i] = 0;
+    const bool near_zero = is_near_zero(i, x[i]) && is_near_zero(i, before_[i]);
+    if (!near_zero && !(std::abs(x[i] - before_[i]) < near_distance(i, x[i]))) growth_[i] = 0;
   }
   before_.assign(x.begin(), x.end());
   time_ = t;
@@ -62,18 +69,22 @@ double GrowthWatch::absolute_tolerance(std::size_t i) const {
   return settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
 }
 
-double GrowthWatch::near_distance(std::size_t i, double x, bool zero) const {
-  const double absolute = absolute_tolerance(i) / settings_.relative_tolerance;
-  return zero ? kNear * std::abs(x) + kNearZero * absolute : kNear * (std::abs(x) + absolute);
+double GrowthWatch::near_distance(std::size_t i, double x) const {
+  return kNear * (std::abs(x) + absolute_tolerance(i) / settings_.relative_tolerance);
 }
 
-/// Whether any state has moved, and by little.
+bool GrowthWatch::is_near_zero(std::size_t i, double x) const {
+  return std::abs(x) < kNearZero * absolute_tolerance(i) / settings_.relative_tolerance;
+}
+
+/// Whether any state has moved, and by little or near zero.
 bool GrowthWatch::is_near_rest(std::span<const double> x) {
   bool any = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
     change_[i] = std::abs(x[i] - before_[i]);
-    near_[i] = change_[i] > 0 && change_[i] < near_distance(i, x[i], true);
-    any = any || near_[i];
+    near_[i] = change_[i] > 0 && change_[i] < near_distance(i, x[i]);
+    near_zero_[i] = change_[i] > 0 && is_near_zero(i, x[i]) && is_near_zero(i, before_[i]);
+    any = any || near_[i] || near_zero_[i];
   }
   return any;
 }
@@ -84,6 +95,7 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
   time_ = t;
   if (!near) {
     std::fill(growth_.begin(), growth_.end(), 0.0);
+    std::fill(least_.begin(), least_.end(), kInfinity);
     judged_ = t;
   } else if (++steps_ >= kStepsBetween || step_ > kLonger * judged_step_) {
     judge(t, x, step_);
@@ -142,7 +154,10 @@ double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
 }
 
 void GrowthWatch::end() {
-  if (steps_ > 0 && std::find(near_.begin(), near_.end(), true) != near_.end()) judge(time_, before_, step_);
+  const auto is_any = [](const std::vector<bool>& states) {
+    return std::find(states.begin(), states.end(), true) != states.end();
+  };
+  if (steps_ > 0 && (is_any(near_) || is_any(near_zero_))) judge(time_, before_, step_);
 }
 
 /// Whether a mode of these states grows about as fast as the Jacobian says. That of a slide does not: it
@@ -175,14 +190,14 @@ bool GrowthWatch::grows_by_differences(double t, std::span<const double> x,
 /// growth, where they are [machine unit]: with f = rate · (x − e) they grow as (x − e) + e′/rate does. An
 /// amplifier that leaves its limit begins at e exactly, and yet nothing but e′ decides where it goes.
 double GrowthWatch::driven_distance(double t, std::span<const double> x,
-                                    const std::vector<std::size_t>& states, double rate) {
+                                    const std::vector<std::size_t>& states, double rate, bool zero) {
   const double dt = std::min(step_, 1 / rate);
   std::vector<double> now(x.size()), before(x.size());
   if (!system_.derivatives(t - dt, x.data(), before.data()) || !system_.derivatives(t, x.data(), now.data()))
     return 0;
   double distance = 0;
   for (const std::size_t i : states)
-    distance = std::max(distance, std::abs(now[i] + (now[i] - before[i]) / (dt * rate)) / rate);
+    distance = std::max(distance, std::abs((zero ? 0 : now[i]) + (now[i] - before[i]) / (dt * rate)) / rate);
   return distance;
 }
 
@@ -213,14 +228,49 @@ bool GrowthWatch::leaves_at_once(std::span<const double> x, const std::vector<st
 void GrowthWatch::judge(double t, std::span<const double> x, double step) {
   if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
   ++looked_;
-  std::vector<bool> unstable(x.size(), false), near(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) near[i] = near_[i] && change_[i] < near_distance(i, x[i], false);
-  for (const CoupledModes& group : modes_.find(jacobian_, near_)) judge(group, t, x, step, true, unstable);
-  // What moves slowly beside them may not be near to zero, and yet of one group with them.
-  for (const CoupledModes& group : modes_.find(jacobian_, near)) judge(group, t, x, step, false, unstable);
+  std::vector<bool> unstable(x.size(), false), small(x.size(), false);
+  for (const CoupledModes& group : modes_.find(jacobian_, near_zero_)) {
+    judge(group, t, x, step, true, unstable);
+    watch_amplitude(group.states, t, x);
+    for (const std::size_t i : group.states) small[i] = true;
+  }
+  for (const CoupledModes& group : modes_.find(jacobian_, near_)) judge(group, t, x, step, false, unstable);
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!unstable[i]) growth_[i] = 0;
+    if (!small[i]) least_[i] = kInfinity;
   }
+}
+
+/// Growth that no mode shows at any instant, as that of a swing whose length changes: states near zero, where
+/// they would stay by themselves, that have become many times as large.
+void GrowthWatch::watch_amplitude(const std::vector<std::size_t>& states, double t,
+                                  std::span<const double> x) {
+  constexpr double kTimes = 50;  // an oscillation takes its states through zero by turns
+  double amplitude = 0, least = 0;
+  for (const std::size_t i : states) amplitude = std::max(amplitude, std::abs(x[i]));
+  constexpr double kOut = 0.05;  // of what counts as near zero: what stays below is not read as larger
+  bool told = false, is_on_its_way = false;
+  for (const std::size_t i : states) {
+    const bool same = std::exchange(acts_with_[i], states.size()) == states.size();
+    least_[i] = same ? std::min(least_[i], amplitude) : amplitude;
+    least = std::max(least, least_[i]);
+    told = told || told_[i];
+    is_on_its_way = is_on_its_way || !is_near_zero(i, x[i] / kOut);
+  }
+  if (told || !is_on_its_way || !(amplitude > kTimes * least)) return;
+  constexpr double kOfThemselves = 1e-3;  // of their rates: what is left of them at zero
+  std::vector<double> zero(x.begin(), x.end()), there(x.size()), here(x.size());
+  for (const std::size_t i : states) zero[i] = 0;
+  if (!system_.derivatives(t, zero.data(), there.data()) || !system_.derivatives(t, x.data(), here.data()))
+    return;
+  double left = 0, largest = 0;
+  for (const std::size_t i : states) {
+    left = std::max(left, std::abs(there[i]));
+    largest = std::max(largest, std::abs(here[i]));
+  }
+  if (!(left <= kOfThemselves * largest)) return;
+  found_.push_back({t, states, least, false});
+  for (const std::size_t i : states) told_[i] = true;
 }
 
 /// The same of states that act on each other, of an equilibrium at `zero` or elsewhere, unless they are found
@@ -234,13 +284,12 @@ void GrowthWatch::judge(const CoupledModes& group, double t, std::span<const dou
   const double part = std::min(1.0, rate * step);
   double distance = 0, size = 0;
   for (const std::size_t i : group.states) {
-    if (unstable[i] || !(change_[i] < part * near_distance(i, x[i], zero))) return;
-    distance = std::max(distance, change_[i] / part);
+    if (unstable[i] || (!zero && !(change_[i] < part * near_distance(i, x[i])))) return;
+    distance = std::max(distance, zero ? std::abs(x[i]) : change_[i] / part);
     size = std::max(size, std::abs(x[i]));
   }
-  distance = std::max(distance, driven_distance(t, x, group.states, rate));
-  const bool in_relative = size > 2 * distance;
-  if (zero && in_relative) return;
+  distance = std::max(distance, driven_distance(t, x, group.states, rate, zero));
+  const bool in_relative = !zero && size > 2 * distance;
   double least = distance;
   bool much = false, told = false;
   for (const std::size_t i : group.states) {

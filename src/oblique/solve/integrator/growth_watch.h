@@ -50,16 +50,17 @@ class GrowthWatch {
   const std::vector<UnseenGrowth>& found() const { return found_; }
 
  private:
-  double absolute_tolerance(std::size_t i) const;  ///< [machine unit]
-  /// [machine unit], of an equilibrium that is at `zero` or is not.
-  double near_distance(std::size_t i, double x, bool zero) const;
+  double absolute_tolerance(std::size_t i) const;       ///< [machine unit]
+  double near_distance(std::size_t i, double x) const;  ///< [machine unit]
+  bool is_near_zero(std::size_t i, double x) const;
   double own_growth(std::size_t state) const;
   bool is_near_rest(std::span<const double> x);
   double driven_distance(double t, std::span<const double> x, const std::vector<std::size_t>& states,
-                         double rate);
+                         double rate, bool zero);
   bool leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states, double rate,
                       double distance) const;
   void judge(double t, std::span<const double> x, double step);
+  void watch_amplitude(const std::vector<std::size_t>& states, double t, std::span<const double> x);
   void judge(const CoupledModes& group, double t, std::span<const double> x, double step, bool zero,
              std::vector<bool>& unstable);
   bool grows_by_differences(double t, std::span<const double> x, const std::vector<std::size_t>& states,
@@ -72,7 +73,9 @@ class GrowthWatch {
   ModeFinder modes_;
   std::vector<double> growth_;    ///< of each state, in powers of e, while it is near an unstable equilibrium
   std::vector<double> distance_;  ///< the least since then
-  std::vector<bool> near_;
+  std::vector<double> least_;     ///< of each state, while it is near zero: amplitude of those it acts with
+  std::vector<std::size_t> acts_with_;  ///< how many these were
+  std::vector<bool> near_, near_zero_;
   double time_ = 0, step_ = 0, judged_ = 0, judged_step_ = 0;
   int steps_ = 0;                 ///< since it was judged
   long looked_ = 0;               ///< Jacobians
