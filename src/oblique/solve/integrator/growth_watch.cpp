@@ -11,11 +11,13 @@
 namespace oblique::solve {
 namespace {
 
-/// Over the relative tolerance: as many tolerances from an equilibrium the solver keeps the distance to some
-/// hundred times the tolerance of the run, as far as those of its errors go that are parts of the states. The
-/// absolute ones, which a finer run can make smaller alone, are all made in the first of the growth: by BDF
-/// they come to some 5 of its tolerances.
-constexpr double kNear = 1e-4, kNearZero = 2e-2;
+/// A run is to be good to so many of its tolerances where it grows out of an equilibrium. While it does so by
+/// e² the solver makes errors of so many of its own, relative ones, as parts of the distance: by Adams and
+/// BDF some 3, by Rodas5P 0.2 (the distance has become e² times as large by then).
+constexpr double kKept = 100, kMade = 20, kMadeByRodas = 1.5;
+/// Its absolute ones come to as much; but a finer run can make them smaller alone. As a part of the size at
+/// which they are as large as the relative ones:
+constexpr double kNearZero = 2e-2;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -39,6 +41,8 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, doub
     : system_(system),
       settings_(settings),
       span_(span),
+      near_part_((settings.method == diagram::IntegrationMethod::rodas ? kMadeByRodas : kMade) *
+                 settings.relative_tolerance / (kKept * settings.asked)),
       change_(system.size()),
       jacobian_(system.pattern().entries()),
       modes_(system.pattern()),
@@ -70,7 +74,7 @@ double GrowthWatch::absolute_tolerance(std::size_t i) const {
 }
 
 double GrowthWatch::near_distance(std::size_t i, double x) const {
-  return kNear * (std::abs(x) + absolute_tolerance(i) / settings_.relative_tolerance);
+  return near_part_ * (std::abs(x) + absolute_tolerance(i) / settings_.relative_tolerance);
 }
 
 bool GrowthWatch::is_near_zero(std::size_t i, double x) const {
@@ -269,7 +273,7 @@ void GrowthWatch::watch_amplitude(const std::vector<std::size_t>& states, double
     largest = std::max(largest, std::abs(here[i]));
   }
   if (!(left <= kOfThemselves * largest)) return;
-  found_.push_back({t, states, least, false});
+  found_.push_back({t, states, least});
   for (const std::size_t i : states) told_[i] = true;
 }
 
@@ -315,7 +319,7 @@ void GrowthWatch::judge(const CoupledModes& group, double t, std::span<const dou
     held_since_[first] = looked_;
     return let_go();
   }
-  found_.push_back({t, group.states, least, in_relative});
+  found_.push_back({t, group.states, least, in_relative ? least / size : 0});
   for (const std::size_t i : group.states) told_[i] = true;
 }
 

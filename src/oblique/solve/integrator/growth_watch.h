@@ -15,7 +15,9 @@ struct UnseenGrowth {
   double time = 0;                  ///< [s] when it was noticed
   std::vector<std::size_t> states;  ///< those that act on each other there
   double distance = 0;              ///< [machine unit] from the equilibrium: the least that was seen
-  bool in_relative = false;         ///< the equilibrium is not zero, so that the relative tolerance hides it
+  /// Where the equilibrium is not zero, so that the relative tolerance hides it: the distance as a part of
+  /// the largest of the states; else 0.
+  double relative = 0;
 };
 
 /// Watches the steps of a solver for growth that it does not see. A solver holds states to their tolerances
@@ -69,6 +71,7 @@ class GrowthWatch {
   OdeSystem& system_;
   const SolverSettings& settings_;
   double span_;
+  double near_part_;  ///< of a state: nearer to an equilibrium the relative tolerance hides the distance
   std::vector<double> before_, change_, jacobian_;
   ModeFinder modes_;
   std::vector<double> growth_;    ///< of each state, in powers of e, while it is near an unstable equilibrium

@@ -40,6 +40,10 @@ double times_tighter(diagram::IntegrationMethod method) {
 /// Below this, rounding in dx/dt decides about steps.
 constexpr double kFinestTolerance = 1e-14;
 
+/// Of the distance from an equilibrium that is not zero, as a part of the states: what the relative tolerance
+/// is to be, so that what grows out of it is good to ten tolerances of the run or so.
+constexpr double kOfDistance = 2;
+
 /// Of the distance from an equilibrium out of which a state grew: the size down to which it is to be known.
 /// The run that found the distance was itself wrong about how small it became.
 constexpr double kFarBelow = 1e-8;
@@ -62,7 +66,9 @@ void refine(const Unseen& unseen, std::size_t n_states, Refinement& refinement) 
     reach = reach > 0 ? std::min(reach, size) : size;
   };
   for (const UnseenGrowth& growth : unseen.growth) {
-    refinement.finest = refinement.finest || growth.in_relative;
+    if (growth.relative > 0)
+      refinement.nearest =
+          refinement.nearest > 0 ? std::min(refinement.nearest, growth.relative) : growth.relative;
     for (const std::size_t i : growth.states) reach_to(i, kFarBelow * growth.distance);
   }
   for (const SmallState& small : unseen.small) reach_to(small.state, kAbsoluteTolerance * small.size);
@@ -77,9 +83,12 @@ SolverSettings solver_settings(const std::vector<network::State>& states, const 
                                diagram::IntegrationMethod method, const Refinement& refinement) {
   SolverSettings settings;
   settings.method = method;
+  settings.asked = options.tolerance;
   const double wanted = times_tighter(method);
   settings.relative_tolerance = std::max(kFinestTolerance, options.tolerance / wanted);
-  if (refinement.finest) settings.relative_tolerance = kFinestTolerance;
+  if (refinement.nearest > 0)
+    settings.relative_tolerance = std::clamp(kOfDistance * refinement.nearest * options.tolerance,
+                                             kFinestTolerance, settings.relative_tolerance);
   const double tighter = options.tolerance / settings.relative_tolerance;
   settings.absolute_tolerance =
       options.absolute_tolerance.value_or(kAbsoluteTolerance * options.tolerance) / tighter;

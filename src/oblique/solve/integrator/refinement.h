@@ -31,7 +31,8 @@ struct Refinement {
   /// [machine unit] of each state: the size at which its absolute tolerance is as much as the relative one;
   /// 0: as usual.
   std::vector<double> reach;
-  bool finest = false;  ///< relative tolerance down to rounding
+  double nearest =
+      0;  ///< least part of states by which they are away from an equilibrium to be left; 0: none
 
   bool operator==(const Refinement&) const = default;
 };

@@ -21,6 +21,7 @@ struct SolverSettings {
   double max_step = std::numeric_limits<double>::infinity();  ///< [s] the longest step
   diagram::IntegrationMethod method = diagram::IntegrationMethod::bdf;
   std::vector<double> own_tolerances = {};  ///< [machine unit] of each state, where not all have that one
+  double asked = 1e-8;                      ///< relative tolerance of the run; the solver's is tighter
 };
 
 /// Why a solver could not go on.
