@@ -61,7 +61,10 @@ bool EventActions::is_zeno(const Come& come, double t) {
   if (what.repeats) return false;
   look_for_lost(come.event, t);
   const auto zeno = paces_[come.event].come(t, span_, end_);
-  if (!zeno && !come.at_once) return false;
+  // Where a ball bounces by its errors, in no rhythm, it has come to rest.
+  constexpr int kMostTiny = 1000;
+  const bool by_errors = what.piling_up && paces_[come.event].tiny > kMostTiny;
+  if (!zeno && !come.at_once && !by_errors) return false;
   if (what.piling_up) {
     piled_up_ = t;
     return true;

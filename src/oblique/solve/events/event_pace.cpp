@@ -14,6 +14,7 @@ constexpr double kQuickly = 0.7;
 constexpr double kSameRatio = 0.01;
 constexpr double kSteadyOver = 4;
 constexpr double kSteady = 0.75;
+constexpr double kAlone = 0.1;  ///< of the ratio before: one that comes so soon is not of the row
 
 }  // namespace
 
@@ -24,6 +25,9 @@ std::optional<EventPace::Zeno> EventPace::come(double t, double span, double end
   // One that comes soon for once (a pulse beside the rhythm) says nothing of the next ones.
   const double next = shorter > 1 ? std::max(present, ratio) : present;
   const double left = now * next / (1 - next);  // Σ now · nextᵏ
+  constexpr double kTiny = 1e-6;                // of the run
+  if (now < kTiny * span && shorter < kMostShorter) ++tiny;
+  if (!(now < kZenoTime * span)) tiny = 0;
   if (shorter == 0) {
     steady = false;
     longer.reset();
@@ -35,7 +39,8 @@ std::optional<EventPace::Zeno> EventPace::come(double t, double span, double end
   const bool quick = shorter > 1 && present < kQuickly && std::abs(present - ratio) < kSameRatio * present;
   const bool many = steady && shorter >= kMostShorter && now < kZenoTime * span;
   constexpr double kSoon = 1e-2;  // of the run
-  const bool comes_faster = steady && shorter >= kMostShorter && left < kSoon * span;
+  const bool comes_faster =
+      steady && shorter >= kMostShorter && left < kSoon * span && present > kAlone * ratio;
   if (comes_faster) {
     due = t + left;
   } else if (due && t > *due) {

@@ -17,6 +17,8 @@ struct EventPace {
   std::optional<double> interval;  ///< since it came before [s]; nothing where it came at once
   double ratio = 1;                ///< of the interval to the one before
   int shorter = 0;                 ///< how often in a row the interval has become shorter
+  /// How often it has come within 1e-6 of the run, but in no such row, since it has not within 1e-5.
+  int tiny = 0;
   /// An interval of the row [s]; 1 less the ratio of it to the one before, and whether that is still so.
   std::optional<double> longer;
   double approach = 0;
