@@ -24,8 +24,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// In powers of e: what has grown more is judged. Less is the growth of every step that turns away.
 constexpr double kGrown = 2;
 
-/// A Jacobian is looked at after so many steps, or where the step has become longer by so much.
-constexpr int kStepsBetween = 8;
+/// A Jacobian is looked at after so many steps, ever more of them where nothing grows and nothing is near
+/// zero, or where the step has become longer by so much.
+constexpr int kStepsBetween = 8, kMostStepsBetween = 32;
 constexpr double kLonger = 1.5;
 
 /// More states than these are not asked by differences.
@@ -35,12 +36,17 @@ constexpr double kDifference = 1e-7;  ///< [of a state, or machine unit]
 /// one.
 constexpr double kNoRoot = 0.3;
 
+bool is_any(const std::vector<bool>& states) {
+  return std::find(states.begin(), states.end(), true) != states.end();
+}
+
 }  // namespace
 
 GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, double span)
     : system_(system),
       settings_(settings),
       span_(span),
+      steps_between_(kStepsBetween),
       near_part_((settings.method == diagram::IntegrationMethod::rodas ? kMadeByRodas : kMade) *
                  settings.relative_tolerance / (kKept * settings.asked)),
       change_(system.size()),
@@ -101,8 +107,11 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
     std::fill(growth_.begin(), growth_.end(), 0.0);
     std::fill(least_.begin(), least_.end(), kInfinity);
     judged_ = t;
-  } else if (++steps_ >= kStepsBetween || step_ > kLonger * judged_step_) {
+  } else if (++steps_ >= (is_any(near_zero_) ? kStepsBetween : steps_between_) ||
+             step_ > kLonger * judged_step_) {
     judge(t, x, step_);
+    const bool grows = std::any_of(growth_.begin(), growth_.end(), [](double g) { return g > 0; });
+    steps_between_ = grows ? kStepsBetween : std::min(2 * steps_between_, kMostStepsBetween);
     judged_ = t;
     judged_step_ = step_;
     steps_ = 0;
@@ -158,9 +167,6 @@ double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
 }
 
 void GrowthWatch::end() {
-  const auto is_any = [](const std::vector<bool>& states) {
-    return std::find(states.begin(), states.end(), true) != states.end();
-  };
   if (steps_ > 0 && (is_any(near_) || is_any(near_zero_))) judge(time_, before_, step_);
 }
 

@@ -71,7 +71,8 @@ class GrowthWatch {
   OdeSystem& system_;
   const SolverSettings& settings_;
   double span_;
-  double near_part_;  ///< of a state: nearer to an equilibrium the relative tolerance hides the distance
+  int steps_between_;  ///< looks at a Jacobian
+  double near_part_;   ///< of a state: nearer to an equilibrium the relative tolerance hides the distance
   std::vector<double> before_, change_, jacobian_;
   ModeFinder modes_;
   std::vector<double> growth_;    ///< of each state, in powers of e, while it is near an unstable equilibrium
