@@ -34,6 +34,16 @@ struct Halves {
   Run whole, first, second;
 };
 
+/// What a run saves, with another value of one of its states.
+auto saved_with(const testing::Compiled& made, const RunOptions& options, const std::string& state,
+                const std::string& value) {
+  std::string text = to_text(oblique::solve::run(made.program, made.flat, options).state);
+  const std::size_t at = text.find("\"" + state + "\" = ");
+  EXPECT_NE(at, std::string::npos);
+  text.replace(at, text.find('\n', at) - at, "\"" + state + "\" = " + value);
+  return parse_run_state(text, "state.toml");
+}
+
 // x = 0.9 e^(−5.8 t): half way it is 3e-10, at the end 1e-19, and its sign is always the same.
 TEST(ResumedSwitch, OfADecayStaysWhereItWas) {
   const testing::Compiled made(R"(
@@ -63,11 +73,7 @@ clock = { type = "pulse-train", period = 0.1, width = 0.05 }
   RunOptions options;
   options.until = 0.91;
   options.tolerance = 1e-6;
-  std::string text = to_text(oblique::solve::run(made.program, made.flat, options).state);
-  const std::size_t at = text.find("\"x\" = ");
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, text.find('\n', at) - at, "\"x\" = -1.9e-10");
-  options.from = parse_run_state(text, "state.toml");
+  options.from = saved_with(made, options, "x", "-1.9e-10");
   options.until = 1.8;
   options.method = diagram::IntegrationMethod::bdf;
   const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
@@ -108,11 +114,7 @@ c = { type = "comparator", in = ["-x", "l"] }
   RunOptions options;
   options.until = 7.8539815;
   options.tolerance = 1e-8;
-  std::string text = to_text(oblique::solve::run(made.program, made.flat, options).state);
-  const std::size_t at = text.find("\"l\" = ");
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, text.find('\n', at) - at, "\"l\" = 1.0000000002");
-  options.from = parse_run_state(text, "state.toml");
+  options.from = saved_with(made, options, "l", "1.0000000002");
   options.until = 12;
   const oblique::solve::Run run = oblique::solve::run(made.program, made.flat, options);
   ASSERT_EQ(run.warnings.size(), 1U);
