@@ -235,6 +235,28 @@ y = { type = "servo-amplifier", in = ["-u", "-0.5*y"], gain = 1e6, bandwidth = 1
   for (std::size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(y[k], t[k] < turns ? 1 : -1, 1e-7) << t[k];
 }
 
+// x′ = x − 1 − A sin 10t from 1: x stands still at times, but what drives it moves the place at which it
+// would stay by far more than its errors.
+TEST(UnseenGrowth, IsNotWhatOtherStatesDrive) {
+  const Compiled made(R"(one = { type = "constant" }
+s = { type = "integrator", in = "10*v" }
+v = { type = "integrator", in = "-10*s", initial = 0.001 }
+x = { type = "integrator", in = ["x", "-one", "-s"], initial = 1 }
+)");
+  for (const auto method : kMethods) {
+    RunOptions options;
+    options.until = 4;
+    options.method = method;
+    int restarts = 0;
+    options.on_restart = [&] { ++restarts; };
+    const oblique::solve::Run result = run(made.program, made.flat, options);
+    EXPECT_TRUE(result.warnings.empty());
+    EXPECT_EQ(restarts, 0) << static_cast<int>(method);
+    const double ends = 1 + 1e-3 * (std::sin(40) + 10 * (std::cos(40) - std::exp(4.0))) / 101;
+    EXPECT_NEAR(row_values(result, "x").back(), ends, 1e-8);  // the tolerance
+  }
+}
+
 // Steps that were short for its growth become long again once it stands at its limit, where nothing asks for
 // the Jacobian any more: 1500 in all, and not 10⁷.
 TEST(UnseenGrowth, KeepsNoStepsShortThatHasEnded) {

@@ -196,14 +196,18 @@ bool GrowthWatch::grows_by_differences(double t, std::span<const double> x,
   return matrix.eigenvalues().real().maxCoeff() >= rate / 2;
 }
 
-/// How far from the equilibrium what the time does would take these states in a time constant of their
-/// growth, where they are [machine unit]: with f = rate · (x − e) they grow as (x − e) + e′/rate does. An
-/// amplifier that leaves its limit begins at e exactly, and yet nothing but e′ decides where it goes.
+/// How far from the equilibrium what the time does, and of one that is not zero what the other states do,
+/// would take these states in a time constant of their growth, where they are [machine unit]: with
+/// f = rate · (x − e) they grow as (x − e) + e′/rate does. An amplifier that leaves its limit begins at e
+/// exactly, and yet nothing but e′ decides where it goes.
 double GrowthWatch::driven_distance(double t, std::span<const double> x,
                                     const std::vector<std::size_t>& states, double rate, bool zero) {
   const double dt = std::min(step_, 1 / rate);
-  std::vector<double> now(x.size()), before(x.size());
-  if (!system_.derivatives(t - dt, x.data(), before.data()) || !system_.derivatives(t, x.data(), now.data()))
+  std::vector<double> past(x.begin(), x.end()), now(x.size()), before(x.size());
+  for (std::size_t i = 0; i < x.size() && !zero; ++i) past[i] -= (x[i] - before_[i]) * dt / step_;
+  for (const std::size_t i : states) past[i] = x[i];
+  if (!system_.derivatives(t - dt, past.data(), before.data()) ||
+      !system_.derivatives(t, x.data(), now.data()))
     return 0;
   double distance = 0;
   for (const std::size_t i : states)
@@ -299,6 +303,8 @@ void GrowthWatch::judge(const CoupledModes& group, double t, std::span<const dou
     size = std::max(size, std::abs(x[i]));
   }
   distance = std::max(distance, driven_distance(t, x, group.states, rate, zero));
+  const auto is_near = [&](std::size_t i) { return distance < near_distance(i, x[i]); };
+  if (!zero && std::none_of(group.states.begin(), group.states.end(), is_near)) return;
   const bool in_relative = !zero && size > 2 * distance;
   double least = distance;
   bool much = false, told = false;
