@@ -25,9 +25,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGrown = 2;
 
 /// A Jacobian is looked at after so many steps, ever more of them where nothing grows and nothing is near
-/// zero, or where the step has become longer by so much.
+/// zero, or where the step has become longer by so much, unless what was near then has not grown by so much
+/// since, in powers of e.
 constexpr int kStepsBetween = 8, kMostStepsBetween = 32;
-constexpr double kLonger = 1.5;
+constexpr double kLonger = 1.5, kLittle = 0.1;
 
 /// More states than these are not asked by differences.
 constexpr std::size_t kMostByDifferences = 100;
@@ -51,6 +52,7 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, doub
                  settings.relative_tolerance / (kKept * settings.asked)),
       change_(system.size()),
       jacobian_(system.pattern().entries()),
+      small_modes_(system.pattern()),
       modes_(system.pattern()),
       growth_(system.size()),
       distance_(system.size()),
@@ -58,9 +60,13 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, doub
       acts_with_(system.size()),
       near_(system.size()),
       near_zero_(system.size()),
+      judged_near_(system.size()),
       told_(system.size()),
       stood_(system.size()),
-      held_since_(system.size()) {}
+      held_since_(system.size()) {
+  for (std::size_t i = 0; i < system.size(); ++i)
+    switch_over_.push_back(absolute_tolerance(i) / settings_.relative_tolerance);
+}
 
 void GrowthWatch::restart(double t, std::span<const double> x) {
   if (before_.empty() || std::all_of(growth_.begin(), growth_.end(), [](double g) { return g == 0; }))
@@ -80,21 +86,26 @@ double GrowthWatch::absolute_tolerance(std::size_t i) const {
 }
 
 double GrowthWatch::near_distance(std::size_t i, double x) const {
-  return near_part_ * (std::abs(x) + absolute_tolerance(i) / settings_.relative_tolerance);
+  return near_part_ * (std::abs(x) + switch_over_[i]);
 }
 
 bool GrowthWatch::is_near_zero(std::size_t i, double x) const {
-  return std::abs(x) < kNearZero * absolute_tolerance(i) / settings_.relative_tolerance;
+  return std::abs(x) < kNearZero * switch_over_[i];
 }
 
 /// Whether any state has moved, and by little or near zero.
 bool GrowthWatch::is_near_rest(std::span<const double> x) {
+  any_near_zero_ = false;
   bool any = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    change_[i] = std::abs(x[i] - before_[i]);
-    near_[i] = change_[i] > 0 && change_[i] < near_distance(i, x[i]);
-    near_zero_[i] = change_[i] > 0 && is_near_zero(i, x[i]) && is_near_zero(i, before_[i]);
-    any = any || near_[i] || near_zero_[i];
+    const double change = std::abs(x[i] - before_[i]);
+    const bool near = change > 0 && change < near_distance(i, x[i]);
+    const bool near_zero = change > 0 && is_near_zero(i, x[i]) && is_near_zero(i, before_[i]);
+    change_[i] = change;
+    near_[i] = near;
+    near_zero_[i] = near_zero;
+    any_near_zero_ = any_near_zero_ || near_zero;
+    any = any || near || near_zero;
   }
   return any;
 }
@@ -107,8 +118,8 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
     std::fill(growth_.begin(), growth_.end(), 0.0);
     std::fill(least_.begin(), least_.end(), kInfinity);
     judged_ = t;
-  } else if (++steps_ >= (is_any(near_zero_) ? kStepsBetween : steps_between_) ||
-             step_ > kLonger * judged_step_) {
+  } else if (++steps_ >= (any_near_zero_ ? kStepsBetween : steps_between_) ||
+             (step_ > kLonger * judged_step_ && may_have_grown(t))) {
     judge(t, x, step_);
     const bool grows = std::any_of(growth_.begin(), growth_.end(), [](double g) { return g > 0; });
     steps_between_ = grows ? kStepsBetween : std::min(2 * steps_between_, kMostStepsBetween);
@@ -117,6 +128,15 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
     steps_ = 0;
   }
   std::copy(x.begin(), x.end(), before_.begin());
+}
+
+/// Whether states have come near since it was judged, or those that were may have grown since then.
+bool GrowthWatch::may_have_grown(double t) const {
+  if (fastest_ * (t - judged_) > kLittle) return true;
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    if ((near_[i] || near_zero_[i]) && !judged_near_[i]) return true;
+  }
+  return false;
 }
 
 /// ∂f/∂x of a state by itself, by the Jacobian that was looked at last.
@@ -167,7 +187,7 @@ double GrowthWatch::outrun(double t, std::span<const double> x, double step) {
 }
 
 void GrowthWatch::end() {
-  if (steps_ > 0 && (is_any(near_) || is_any(near_zero_))) judge(time_, before_, step_);
+  if (steps_ > 0 && (is_any(near_) || any_near_zero_)) judge(time_, before_, step_);
 }
 
 /// Whether a mode of these states grows about as fast as the Jacobian says. That of a slide does not: it
@@ -242,8 +262,10 @@ bool GrowthWatch::leaves_at_once(std::span<const double> x, const std::vector<st
 void GrowthWatch::judge(double t, std::span<const double> x, double step) {
   if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
   ++looked_;
+  fastest_ = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) judged_near_[i] = near_[i] || near_zero_[i];
   std::vector<bool> unstable(x.size(), false), small(x.size(), false);
-  for (const CoupledModes& group : modes_.find(jacobian_, near_zero_)) {
+  for (const CoupledModes& group : small_modes_.find(jacobian_, near_zero_)) {
     judge(group, t, x, step, true, unstable);
     watch_amplitude(group.states, t, x);
     for (const std::size_t i : group.states) small[i] = true;
@@ -293,6 +315,7 @@ void GrowthWatch::judge(const CoupledModes& group, double t, std::span<const dou
                         bool zero, std::vector<bool>& unstable) {
   double rate = 0;
   for (const std::complex<double>& mode : group.eigenvalues) rate = std::max(rate, mode.real());
+  fastest_ = std::max(fastest_, rate);
   if (rate == 0) return;
   // The equilibrium is as far as the states would go back in a time constant of their growth.
   const double part = std::min(1.0, rate * step);

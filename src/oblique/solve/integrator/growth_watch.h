@@ -57,6 +57,7 @@ class GrowthWatch {
   bool is_near_zero(std::size_t i, double x) const;
   double own_growth(std::size_t state) const;
   bool is_near_rest(std::span<const double> x);
+  bool may_have_grown(double t) const;
   double driven_distance(double t, std::span<const double> x, const std::vector<std::size_t>& states,
                          double rate, bool zero);
   bool leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states, double rate,
@@ -73,13 +74,17 @@ class GrowthWatch {
   double span_;
   int steps_between_;  ///< looks at a Jacobian
   double near_part_;   ///< of a state: nearer to an equilibrium the relative tolerance hides the distance
+  /// Of each state, where its absolute tolerance is as large as its relative one [machine unit].
+  std::vector<double> switch_over_;
   std::vector<double> before_, change_, jacobian_;
-  ModeFinder modes_;
+  ModeFinder small_modes_, modes_;  ///< of the states near zero, and of those near any equilibrium
   std::vector<double> growth_;    ///< of each state, in powers of e, while it is near an unstable equilibrium
   std::vector<double> distance_;  ///< the least since then
   std::vector<double> least_;     ///< of each state, while it is near zero: amplitude of those it acts with
   std::vector<std::size_t> acts_with_;  ///< how many these were
-  std::vector<bool> near_, near_zero_;
+  std::vector<bool> near_, near_zero_, judged_near_;
+  bool any_near_zero_ = false;
+  double fastest_ = 0;  ///< growth of those that were near when it was judged [1/s]
   double time_ = 0, step_ = 0, judged_ = 0, judged_step_ = 0;
   int steps_ = 0;                 ///< since it was judged
   long looked_ = 0;               ///< Jacobians
