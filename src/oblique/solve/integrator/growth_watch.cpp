@@ -25,10 +25,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGrown = 2;
 
 /// A Jacobian is looked at after so many steps, ever more of them where nothing grows and nothing is near
-/// zero, or where the step has become longer by so much, unless what was near then has not grown by so much
-/// since, in powers of e.
+/// zero, or where what was near has grown by so much since, in powers of e.
 constexpr int kStepsBetween = 8, kMostStepsBetween = 32;
-constexpr double kLonger = 1.5, kLittle = 0.1;
+constexpr double kGrownBetween = 0.25;
 
 /// More states than these are not asked by differences.
 constexpr std::size_t kMostByDifferences = 100;
@@ -60,7 +59,6 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, doub
       acts_with_(system.size()),
       near_(system.size()),
       near_zero_(system.size()),
-      judged_near_(system.size()),
       told_(system.size()),
       stood_(system.size()),
       held_since_(system.size()) {
@@ -119,24 +117,14 @@ void GrowthWatch::advance(double t, std::span<const double> x) {
     std::fill(least_.begin(), least_.end(), kInfinity);
     judged_ = t;
   } else if (++steps_ >= (any_near_zero_ ? kStepsBetween : steps_between_) ||
-             (step_ > kLonger * judged_step_ && may_have_grown(t))) {
+             fastest_ * (t - judged_) > kGrownBetween) {
     judge(t, x, step_);
     const bool grows = std::any_of(growth_.begin(), growth_.end(), [](double g) { return g > 0; });
     steps_between_ = grows ? kStepsBetween : std::min(2 * steps_between_, kMostStepsBetween);
     judged_ = t;
-    judged_step_ = step_;
     steps_ = 0;
   }
   std::copy(x.begin(), x.end(), before_.begin());
-}
-
-/// Whether states have come near since it was judged, or those that were may have grown since then.
-bool GrowthWatch::may_have_grown(double t) const {
-  if (fastest_ * (t - judged_) > kLittle) return true;
-  for (std::size_t i = 0; i < near_.size(); ++i) {
-    if ((near_[i] || near_zero_[i]) && !judged_near_[i]) return true;
-  }
-  return false;
 }
 
 /// ∂f/∂x of a state by itself, by the Jacobian that was looked at last.
@@ -263,7 +251,6 @@ void GrowthWatch::judge(double t, std::span<const double> x, double step) {
   if (!system_.jacobian(t, x.data(), jacobian_.data())) return;
   ++looked_;
   fastest_ = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) judged_near_[i] = near_[i] || near_zero_[i];
   std::vector<bool> unstable(x.size(), false), small(x.size(), false);
   for (const CoupledModes& group : small_modes_.find(jacobian_, near_zero_)) {
     judge(group, t, x, step, true, unstable);

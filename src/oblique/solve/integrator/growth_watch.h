@@ -57,7 +57,6 @@ class GrowthWatch {
   bool is_near_zero(std::size_t i, double x) const;
   double own_growth(std::size_t state) const;
   bool is_near_rest(std::span<const double> x);
-  bool may_have_grown(double t) const;
   double driven_distance(double t, std::span<const double> x, const std::vector<std::size_t>& states,
                          double rate, bool zero);
   bool leaves_at_once(std::span<const double> x, const std::vector<std::size_t>& states, double rate,
@@ -82,10 +81,10 @@ class GrowthWatch {
   std::vector<double> distance_;  ///< the least since then
   std::vector<double> least_;     ///< of each state, while it is near zero: amplitude of those it acts with
   std::vector<std::size_t> acts_with_;  ///< how many these were
-  std::vector<bool> near_, near_zero_, judged_near_;
+  std::vector<bool> near_, near_zero_;
   bool any_near_zero_ = false;
   double fastest_ = 0;  ///< growth of those that were near when it was judged [1/s]
-  double time_ = 0, step_ = 0, judged_ = 0, judged_step_ = 0;
+  double time_ = 0, step_ = 0, judged_ = 0;
   int steps_ = 0;                 ///< since it was judged
   long looked_ = 0;               ///< Jacobians
   std::vector<bool> told_;        ///< of each state, whether it is among `found_`
