@@ -157,6 +157,27 @@ x = {{ type = "integrator", in = "ax", initial = 1 }}
   }
 }
 
+// A laser whose losses p′ = 20 (n − 5) p are let down to 1 after a minute: p has fallen to e^(−5000), which
+// no number holds, and does not come back for hundreds of seconds. What it leaves in a run is its tolerance,
+// and where that comes back n is half of 2 (1 − e^(−t/20)).
+TEST(UnseenGrowth, IsSeenBehindADecayBelowAllNumbers) {
+  const Compiled made(R"(
+one = { type = "constant" }
+losses = { type = "step", at = 60, from = 5, to = 1 }
+n = { type = "integrator", in = ["0.1*one", "-0.05*n", "-np"] }
+np = { type = "multiplier", in = ["n", "p"] }
+lp = { type = "multiplier", in = ["losses", "p"] }
+p = { type = "integrator", in = ["20*np", "-20*lp"], initial = 1e-5 }
+)");
+  for (const auto method : kMethods) {
+    for (const double tolerance : {1e-4, 1e-6, 1e-10}) {
+      const auto run = run_of(made, {.until = 75, .tolerance = tolerance, .method = method});
+      EXPECT_NEAR(row_values(run, "n").back(), 2 * (1 - std::exp(-75 / 20.)), 2 * tolerance)
+          << tolerance << ' ' << static_cast<int>(method);
+    }
+  }
+}
+
 // As a logistic about 1/2: x′ = (x − 1/2)(3/2 − x) from 1/2 + d. Here the relative tolerance hides the
 // distance: by 5500 tolerances at d = 1e-5. A finer run needs no more of it than is left for d, and at 1e-11
 // there is not so much.

@@ -69,7 +69,9 @@ void refine(const Unseen& unseen, std::size_t n_states, Refinement& refinement) 
     if (growth.relative > 0)
       refinement.nearest =
           refinement.nearest > 0 ? std::min(refinement.nearest, growth.relative) : growth.relative;
-    for (const std::size_t i : growth.states) reach_to(i, kFarBelow * growth.distance);
+    // What fell below the size down to which it was to be known would do so again.
+    for (const std::size_t i : growth.states)
+      reach_to(i, growth.distance < refinement.reach[i] ? kSmallest : kFarBelow * growth.distance);
   }
   for (const SmallState& small : unseen.small) reach_to(small.state, kAbsoluteTolerance * small.size);
   // As small as a decay may become: where it was when it was lost says nothing.
