@@ -27,7 +27,7 @@ testing::RunFailure failure(const std::string& blocks, const testing::Request& r
 
 // The quotient is that of zeros all along: nothing is known of it in any row, though the last solution solves
 // it.
-TEST(SingularLoop, OfADividerOfZerosBetweenEventsAndRows) {
+TEST(SingularLoop, OfADividerOfZerosWhereItBegins) {
   const auto f = failure(R"(
 f = { type = "function-generator", in = "-2*s", points = [[-1, 0.5], [0, 0], [0, 0.5], [1, 0.5]] }
 s = { type = "summer", in = ["2*f"] }
@@ -36,7 +36,7 @@ q = { type = "divider", numerator = "2*s", denominator = "2*f", gain = inf, band
                          {.until = 5, .samples = 41});
   EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
   EXPECT_THAT(f.message,
-              HasSubstr("the algebraic loop q.product → q.quotient → q.product is singular at t = 0.125 s"));
+              HasSubstr("the algebraic loop q.product → q.quotient → q.product is singular at t = 0 s"));
 }
 
 TEST(SingularLoop, OfASummerOnItself) {
@@ -46,6 +46,17 @@ TEST(SingularLoop, OfASummerOnItself) {
   EXPECT_EQ(f.message,
             "d.toml:4:1: the algebraic loop s → s is singular at t = 0 s: its gain is 1\n"
             "  remedy: change a weight so that the gain of the loop is not 1, or put an integrator into it");
+}
+
+// x = |x|, of which one side determines nothing: what the other left while the start was sought is no
+// solution to begin on.
+TEST(SingularLoop, OfOneSideOfAMagnitude) {
+  const auto f =
+      failure("n = { type = \"inverter\", in = \"m\" }\nm = { type = \"absolute-value\", in = \"n\" }\n",
+              {.until = 3, .samples = 41});
+  EXPECT_EQ(f.kind, SolveError::Kind::singular_loop);
+  EXPECT_EQ(f.time, 0);
+  EXPECT_THAT(f.message, HasSubstr("is singular at t = 0 s: its gain is 1\n"));
 }
 
 TEST(SingularLoop, OfTwoSummersInARing) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -74,6 +75,9 @@ std::vector<text::Diagnostic> settle_start(const StartParts& parts, double t, st
       parts.workspace.pass_failing_loops(false);
     };
     parts.switching.start(t, states, rest, parts.loop_start.goes);
+    // A run does not pass through where it begins: what another side of a switch left is no solution there.
+    for (std::size_t l = 0; l < program.loops().size() && !held; ++l)
+      parts.workspace.hold_loop(l, std::numeric_limits<double>::quiet_NaN(), {}, false);
     if (!parts.switching.signals(t, states.data(), signals.data()))
       throw loop_error(program, parts.workspace.trouble(), t, file);
   };
