@@ -135,6 +135,24 @@ z = {{ type = "servo-amplifier", in = ["zz", "zu", "-one"], gain = inf, bandwidt
   }
 }
 
+// y = u − y |y| by the quadratic formula: one solution, but Newton's method on y² goes to that of the other
+// sign where u changes by more than y, thousands of times between two rows. (After 200 parts of a step its
+// search for events was given up, and the other solution was read: a run without end.)
+TEST(Branch, IsFollowedInThousandsOfParts) {
+  const auto result = run_of(Compiled(R"toml(u = { type = "time-function", formula = "1e5*sin(150*time + 2)" }
+b = { type = "absolute-value", in = "y" }
+yb = { type = "multiplier", x = "y", y = "b" }
+y = { type = "summer", in = ["u", "-yb"] }
+)toml"),
+                             {.until = 0.1, .samples = 11});
+  const auto y = row_values(result, "y"), u = row_values(result, "u");
+  for (std::size_t r = 0; r < y.size(); ++r)
+    EXPECT_NEAR(y[r], std::copysign((std::sqrt(1 + 4 * std::abs(u[r])) - 1) / 2, u[r]), 1e-9) << r;
+  ASSERT_EQ(result.events.size(), 5U);  // u = 0 at kπ − 2 = 150 t
+  for (std::size_t k = 0; k < result.events.size(); ++k)
+    EXPECT_NEAR(result.events[k].time, (static_cast<double>(k + 1) * std::numbers::pi - 2) / 150, 1e-12) << k;
+}
+
 // z = (3.81 z − 0.80 u)² by the quadratic formula, from 0 on to where its two solutions meet at t
 // = 2.0355: however far the rows lie apart it is the smaller one. (A step was read from its end, where the
 // way back to its beginning led to the greater.)

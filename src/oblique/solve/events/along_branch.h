@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
+
 #include <oblique/network/program/program.h>
 
 namespace oblique::solve {
@@ -12,18 +14,19 @@ namespace oblique::solve {
 template <class Evaluate>
 double evaluate_along_branch(double from, double to, const network::Workspace& workspace,
                              const Evaluate& evaluate) {
-  constexpr int kMostSteps = 200;
+  constexpr int kMostSteps = 5000;
   if (evaluate(to)) return to;
   double at = from, step = (to - from) / 2;
   for (int k = 0; k < kMostSteps && at + step != at; ++k) {
-    if (workspace.trouble().failure != network::LoopFailure::lost) break;
-    if (!evaluate(at + step)) {
-      step /= 2;
-      continue;
+    const double target = std::abs(step) < std::abs(to - at) ? at + step : to;
+    if (evaluate(target)) {
+      if (target == to) return to;
+      at = target;
+      step *= 2;
+    } else {
+      if (workspace.trouble().failure != network::LoopFailure::lost) break;
+      step = (target - at) / 2;
     }
-    at += step;
-    if (evaluate(to)) return to;
-    step = (to - at) / 2;
   }
   return at;
 }
