@@ -300,6 +300,64 @@ TEST(Sensitivities, RefuseWhatTurnsOverJustAtTheStart) {
   EXPECT_EQ(refusal(made, "p.width"), "");
 }
 
+// |1 − w s| of a step s: from there on it lies on its corner at w = 1, and beside it on either side.
+TEST(Sensitivities, RefuseWhatAnEventPutsOnACorner) {
+  const Compiled made(R"(
+one = { type = "constant" }
+s = { type = "step", at = 0.5 }
+d = { type = "summer", in = ["one", "-s"] }
+m = { type = "absolute-value", in = "d" }
+y = { type = "integrator", in = "m" }
+)");
+  EXPECT_THAT(refusal(made, "d.in[2]"), HasSubstr("not known at t = 0.5 s: 'in > 0' of block 'm' lies at its "
+                                                  "switching point from there, and with another"));
+  EXPECT_EQ(refusal(made, "m.in[1]"), "");
+}
+
+// Two stores on either edge of a clock whose first pulse begins the run, after a comparator at its level: it
+// is high until the second store has taken that, and low from then on, so that no event has set what is
+// stored as they stand now. (High by 1 it passed for logic.)
+TEST(Sensitivities, RefuseWhatSeveralEventsSetAtTheStart) {
+  for (const double high : {0.7, 1.0}) {
+    const Compiled made(fmt::format(R"(
+one = {{ type = "constant" }}
+clk = {{ type = "pulse-train", period = 1, width = 0.4 }}
+nclk = {{ type = "summer", in = ["one", "-clk"] }}
+b = {{ type = "integrator", in = "-q" }}
+c = {{ type = "comparator", in = "b", low = -1, high = {} }}
+m = {{ type = "track-and-store", in = "c", track = "nclk", initial = -1 }}
+q = {{ type = "track-and-store", in = "m", track = "clk", initial = -1 }}
+)",
+                                    high));
+    EXPECT_THAT(refusal(made, "c.high"),
+                HasSubstr("several events one after the other have set a discrete state"))
+        << high;
+  }
+}
+
+// Two events that set a number one after the other, 0, 1 and then 2, which no parameter moves.
+TEST(Sensitivities, OfWhatSeveralEventsSetWithoutThem) {
+  const diagram::BlockLibrary library = testing::shipped_blocks_and("twice", R"toml([inputs]
+in = {}
+[outputs]
+out = {}
+[memories]
+n = 0
+[equations]
+out = "n*in"
+[[events]]
+when = "in > 0"
+set = { n = "n + 1" }
+[[events]]
+when = "n > 0.5"
+set = { n = "2*n" }
+)toml");
+  const Compiled made("c = { type = \"constant\", value = 3 }\nw = { type = \"twice\", in = \"c\" }\n", "",
+                      library);
+  expect_column(differentiated(made, {"c.value"}), "d(w)/d(c.value)", 1e-12,  // to rounding
+                [](double) { return 2; });
+}
+
 TEST(Sensitivities, RefuseWhatTheyDoNotKnow) {
   const Compiled made(
       "b = { type = \"constant\", value = 0.5 }\n"

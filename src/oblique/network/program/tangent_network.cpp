@@ -96,11 +96,15 @@ TangentNetwork with_tangents(Network made, std::span<const std::uint32_t> parame
     const auto& start = state.start_node ? state.start_node : state.start_constant;
     add_tangent(start ? *start : graph.constant(0));
   }
+  rates.discrete_state = [&](std::uint32_t) { return graph.constant(0); };
+  Tangents beside_held(graph, rates);
   for (const Event& event : network.events) {
     std::vector<std::size_t>& actions = t.actions.emplace_back();
+    std::vector<bool>& moves = t.actions_move.emplace_back();
     for (const Event::Action& action : event.actions) {
       actions.push_back(add_signal(network, action.value));
       add_tangent(action.value);
+      moves.push_back(!graph.is_constant(beside_held.of(action.value), 0));
     }
   }
   drop_events(network);

@@ -31,6 +31,8 @@ struct TangentNetwork {
   std::size_t starts = 0;           ///< d of where each state starts
   /// Of each action of each event: its value, and d of it next to it.
   std::vector<std::vector<std::size_t>> actions;
+  /// Of each, whether it may move where no discrete state does.
+  std::vector<std::vector<bool>> actions_move;
 };
 
 /// `parameters` are numbers of ParameterNumbers.

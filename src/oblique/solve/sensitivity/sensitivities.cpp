@@ -392,8 +392,7 @@ void Sensitivities::start_memories(double t, std::span<const double> x, const ne
   for (std::size_t m = 0; m < n_discrete_states_; ++m) {
     if (now[m] == discrete_states_[m] && !is_set(served, false, m)) continue;
     const auto action = matching_action(t, served, false, m, now[m]);
-    const bool is_logic = now[m] == 0 || now[m] == 1;
-    if (!action && is_logic) continue;
+    if (!action && !any_action_moves(served)) continue;
     if (!action)
       refuse(t, "several events one after the other have set a discrete state where the run starts");
     for (std::size_t k = 0; k < count(); ++k) {
@@ -405,6 +404,14 @@ void Sensitivities::start_memories(double t, std::span<const double> x, const ne
   load(run);
 }
 
+/// Whether what any of these events sets may move with a parameter.
+bool Sensitivities::any_action_moves(const std::vector<std::size_t>& served) const {
+  return std::any_of(served.begin(), served.end(), [&](std::size_t e) {
+    const std::vector<bool>& moves = layout_.actions_move[e];
+    return std::find(moves.begin(), moves.end(), true) != moves.end();
+  });
+}
+
 /// What turns over just where the run starts would do so later with a parameter on one side of its value, and
 /// with one on the other have done so before.
 void Sensitivities::refuse_turns_at_start(double t, std::span<const double> x) {
@@ -413,14 +420,33 @@ void Sensitivities::refuse_turns_at_start(double t, std::span<const double> x) {
   for (std::size_t w = 0; w < run_switches_.size(); ++w) {
     if (values_[layout_.event_values + w] == 0) at_zero.push_back(w);
   }
+  const std::vector<std::vector<double>> still(count());
+  refuse_moved(at_zero, t, x, still, "where the run starts");
+}
+
+/// What an event has put on its switching point, where it stays.
+void Sensitivities::refuse_rests(double t, std::span<const double> x, const std::vector<double>& rates) {
+  evaluate_or_refuse(t, x, {1, rates, {}});
+  std::vector<std::size_t> at_zero;
+  for (std::size_t w = 0; w < run_switches_.size(); ++w) {
+    if (values_[layout_.event_values + w] == 0 && values_[layout_.event_functions + w] == 0)
+      at_zero.push_back(w);
+  }
+  refuse_moved(at_zero, t, x, states_, "from there");
+}
+
+/// These switches lie at their switching points, and do not with another parameter: with what moves by
+/// `states` along with each.
+void Sensitivities::refuse_moved(const std::vector<std::size_t>& at_zero, double t, std::span<const double> x,
+                                 const std::vector<std::vector<double>>& states, std::string_view where) {
+  constexpr double kMoves = 1e-9;  // [machine unit], of which rounding makes no more
   for (std::size_t k = 0; !at_zero.empty() && k < count(); ++k) {
-    evaluate_or_refuse(t, x, {0, {}, k});
+    evaluate_or_refuse(t, x, {0, states[k], k});
     for (const std::size_t w : at_zero) {
-      if (values_[layout_.event_functions + w] == 0) continue;
-      refuse(t, fmt::format(
-                    "'{}' of block '{}' lies at its switching point where the run starts, and with another "
-                    "parameter it would not",
-                    run_switches_[w].comparison, run_switches_[w].block));
+      if (!(std::abs(values_[layout_.event_functions + w]) * scales()[k] > kMoves)) continue;
+      refuse(t, fmt::format("'{}' of block '{}' lies at its switching point {}, and with another "
+                            "parameter it would not",
+                            run_switches_[w].comparison, run_switches_[w].block, where));
     }
   }
 }
@@ -566,6 +592,7 @@ void Sensitivities::after_event(double t, std::span<const double> x, const netwo
   }
   memories_ = std::move(memories);
   load(run);
+  refuse_rests(t, x, rates);
 }
 
 }  // namespace oblique::solve

@@ -83,7 +83,11 @@ class Sensitivities {
   void start_states(double t, std::span<const double> x);
   void start_memories(double t, std::span<const double> x, const network::Workspace& run,
                       const std::vector<std::size_t>& served);
+  bool any_action_moves(const std::vector<std::size_t>& served) const;
   void refuse_turns_at_start(double t, std::span<const double> x);
+  void refuse_rests(double t, std::span<const double> x, const std::vector<double>& rates);
+  void refuse_moved(const std::vector<std::size_t>& at_zero, double t, std::span<const double> x,
+                    const std::vector<std::vector<double>>& states, std::string_view where);
   /// Of each discrete state: whether a switch or the timeline sets it, and no event.
   std::vector<bool> are_positions() const;
   [[noreturn]] void refuse(double t, const std::string& why) const;
