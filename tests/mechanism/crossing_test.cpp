@@ -151,6 +151,31 @@ C = [2.86, 0.5]
   }
 }
 
+// A double rocker that stops where its coupler and its right rocker lie on one line, |BD| = 150: the last row
+// is that pose, from wherever the row before it is. (From some the limit seemed to lie a rounding nearer, and
+// the row was open.)
+TEST(Crossing, EndsInThePoseOfALimit) {
+  const Mechanism mechanism =
+      read_mechanism(std::string(OBLIQUE_SOURCE_DIR) + "/diagrams/mechanisms/double-rocker.toml");
+  const double angle = std::acos((60. * 60 + 100. * 100 - 150. * 150) / (2 * 60 * 100));
+  const Vector2d b = 60 * Vector2d(std::cos(angle), std::sin(angle)), d(100, 0);
+  const Vector2d c = b + (d - b) * 70 / 150;
+  const std::size_t point = mechanism.find_point("C").value();
+  for (const AtLimit at_limit : {AtLimit::stop, AtLimit::reverse}) {
+    for (int positions = 2; positions < 200; ++positions) {
+      MotionOptions options;
+      options.positions = positions;
+      options.at_limit = at_limit;
+      const Motion motion = solve_motion(mechanism, options);
+      for (const Configuration& here : motion.configurations)
+        ASSERT_NE(here.status, Status::open) << positions;
+      if (at_limit == AtLimit::reverse) continue;
+      // A dead centre goes by the root of the way: 1e-6 of a link for the 1e-13 rad that rounding leaves.
+      EXPECT_NEAR((motion.configurations.back().points[point].position - c).norm(), 0, 1e-4) << positions;
+    }
+  }
+}
+
 // x = 100 tan φ
 TEST(Crossing, GoesThroughInfinity) {
   const Mechanism mechanism =

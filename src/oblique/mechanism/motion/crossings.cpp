@@ -121,8 +121,11 @@ Crossing cross_modes(BranchWalk& walk, std::size_t g, double t, double zero) {
 
 /// Ends at a limit a time `tau` from here.
 Crossing end_at(BranchWalk& walk, std::size_t g, double t, double tau, const Singularity& singularity) {
-  const double dt = t - walk.time;
-  if (std::abs(dt) <= std::abs(tau)) {
+  // From another pose before it the limit is found to lie elsewhere by a part of the way.
+  constexpr double kOfWay = 1e-3;
+  const double way = t - walk.time;
+  if (std::abs(way) <= (1 + kOfWay) * std::abs(tau)) {
+    const double dt = std::abs(way) < std::abs(tau) ? way : tau;
     walk.predict(dt);
     const Structure& structure = walk.kinematics.structure();
     for (const std::size_t point : structure.groups[g].points)
@@ -130,7 +133,7 @@ Crossing end_at(BranchWalk& walk, std::size_t g, double t, double tau, const Sin
     for (const std::size_t body : structure.groups[g].bodies) walk.next.bodies[body] = walk.here.bodies[body];
     walk.kinematics.solver(g).displace(singularity.branch(dt) * singularity.along + dt * singularity.drift,
                                        walk.next);
-    walk.drives_at(t, walk.next_drives);
+    walk.drives_at(walk.time + dt, walk.next_drives);
     walk.next.status = Status::ok;
     walk.next.group.reset();
     for (std::size_t i = 0; i < walk.courses.size() && walk.next.status != Status::open; ++i) {
