@@ -426,5 +426,26 @@ v = { type = "integrator", in = ["-x", "-0.2*v"] }
   }
 }
 
+// A dyad on a crank's pin and the crank's bearing, which turns with it as a whole: the sides of its triangle
+// stay as they are, but for what steps of the first order take from the crank's circle, and the angle between
+// them is five times as steep. CVODES came into a circle of steps that grew fourfold and failed, 23 million
+// of them.
+TEST(Run, ComesOutOfStepsThatGrowAndFail) {
+  const auto result = run_of(Compiled(R"toml(
+one  = { type = "constant", value = 1 }
+zero = { type = "constant", value = 0 }
+q    = { type = "crank-generator", speed = "one", rate = 12.566370614359172, start = 2.173067797309707 }
+x    = { type = "summer", in = ["0.8527263934638537*q.cos", "-0.29625324037256506*q.sin"] }
+y    = { type = "summer", in = ["0.29625324037256506*q.cos", "0.8527263934638537*q.sin"] }
+p    = { type = "dyad-rrr", px = "x", py = "y", qx = "zero", qy = "zero", r1 = 0.1886110075217694, r2 = 0.9425852242232519, side = -1, reach = 0.903, gain = 1e6, bandwidth = 200 }
+)toml"),
+                             {.until = 0.5, .tolerance = 1e-10, .samples = 11});
+  EXPECT_LT(result.statistics.steps, 3000);
+  const auto x = row_values(result, "p.x"), y = row_values(result, "p.y");
+  for (std::size_t r = 0; r < x.size(); ++r)
+    EXPECT_NEAR(std::hypot(x[r], y[r]), 0.9425852242232519, 1e-7)
+        << r;  // ten times what loops of 1.3e9/s lag
+}
+
 }  // namespace
 }  // namespace oblique::solve

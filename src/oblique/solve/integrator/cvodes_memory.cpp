@@ -123,6 +123,7 @@ void CvodesMemory::follow(Sensitivities& what) {
 
 void CvodesMemory::begin() {
   check_setup(CVodeReInit(cvodes.get(), 0, states.get()));
+  watched = failed = 0;
   if (sensitivities != nullptr) {
     load_sensitivities();
     check_setup(CVodeSensReInit(cvodes.get(), CV_STAGGERED, sensitivity_handles.data()));
@@ -172,7 +173,23 @@ int CvodesMemory::take_step(double part) {
   // CVODES takes a factorisation that found no memory for one that failed.
   if (code < 0 && SUNLinSol_KLUGetCommon(linear_solver.get())->status == KLU_OUT_OF_MEMORY)
     throw std::bad_alloc();
+  if (code >= 0) watch_failures();
   return code;
+}
+
+/// A change of the step may add an error of which steady steps show nothing: the length of a vector that
+/// turns falls evenly by steps of the first order, and with it what is computed from the length. CVODES then
+/// tries four times the step, fails, and comes back to where it was, before it considers a higher order: for
+/// ever. It is to grow by less where so many of so many steps have failed.
+void CvodesMemory::watch_failures() {
+  constexpr long kSteps = 64, kFailures = 24;
+  constexpr double kLess = 2;
+  if (++watched < kSteps) return;
+  long all = 0;
+  CVodeGetNumErrTestFails(cvodes.get(), &all);
+  if (all - failed >= kFailures) check_setup(CVodeSetEtaMax(cvodes.get(), kLess));
+  watched = 0;
+  failed = all;
 }
 
 int CvodesMemory::evaluate(sunrealtype t, N_Vector x, N_Vector dxdt, void* user) {

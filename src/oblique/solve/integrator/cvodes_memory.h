@@ -58,6 +58,8 @@ struct CvodesMemory {
   std::vector<double> start_states;
   std::int64_t max_steps;
   std::int64_t steps = 0;
+  long watched = 0;                 ///< steps since the failures were counted last
+  long failed = 0;                  ///< tests of the error until then
   SolverStatistics before_restart;  ///< CVODES counts from its last start
   SmallSteps small_steps;
   bool saw_refusal = false;  ///< these since the last step that was not small
@@ -93,6 +95,7 @@ struct CvodesMemory {
   SolverFailure failure(int code) const;
 
  private:
+  void watch_failures();
   void load_sensitivities();
   double own_time(double at) const;
   static int evaluate(sunrealtype t, N_Vector x, N_Vector dxdt, void* user);
