@@ -426,6 +426,29 @@ v = { type = "integrator", in = ["-x", "-0.2*v"] }
   }
 }
 
+// (1 + x²) y = x by an ideal amplifier, with x the integral of 1 from −4: the solver goes by steps of
+// seconds, in one of which y turns at ±1/2.
+TEST(Run, FindsExtremesOfALoopWithinLongSteps) {
+  const Compiled made(R"toml(
+one = { type = "constant" }
+x = { type = "integrator", in = "one", initial = -4 }
+xx = { type = "squarer", in = "x" }
+d = { type = "summer", in = ["one", "xx"] }
+dy = { type = "multiplier", x = "d", y = "y" }
+y = { type = "servo-amplifier", in = ["dy", "-x"], gain = inf, bandwidth = inf, initial = -0.2 }
+)toml");
+  RunOptions options;
+  options.until = 8;
+  options.samples = 7;
+  options.extremes = true;
+  const std::vector<Extremes> found = run(made.program, made.flat, options).extremes;
+  const std::size_t y = made.flat.outputs.size() - 1;
+  ASSERT_EQ(made.flat.outputs[y].name, "y");
+  EXPECT_NEAR(found[y].maximum.value, 0.5, 1e-9);  // a parabola through neighbours 1e-4 s away
+  EXPECT_NEAR(found[y].minimum.value, -0.5, 1e-9);
+  EXPECT_NEAR(found[y].maximum.time, 5, 1e-3);
+}
+
 // A dyad on a crank's pin and the crank's bearing, which turns with it as a whole: the sides of its triangle
 // stay as they are, but for what steps of the first order take from the crank's circle, and the angle between
 // them is five times as steep. CVODES came into a circle of steps that grew fourfold and failed, 23 million

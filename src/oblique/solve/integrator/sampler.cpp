@@ -70,12 +70,22 @@ void Sampler::advance(double t, const Interpolant& solution) {
   }
 }
 
-/// In the middle of the segment and at its ends; and where a parabola through these has its top, if that may
-/// be an extreme of the run, by parabolas through ever closer neighbours, whose error falls with the third
-/// power of their distance. Missed is a second top between two points of the solver.
+/// What follows the time through a loop, or states that a solver integrates by long steps, turns wherever it
+/// likes: no part that is looked at is longer than a three-hundredth of the run.
 void Sampler::watch(double from, double to, const Interpolant& solution) {
+  constexpr double kFewest = 300;
   if (!options_.extremes) return;
+  const double span = options_.until - (options_.from ? options_.from->time : 0);
+  const double parts = std::max(1.0, std::ceil(kFewest * (to - from) / span));
+  const auto end = [&](double part) { return part == parts ? to : from + (to - from) * part / parts; };
   double last = to;
+  for (double part = 0; part < parts; ++part) last = watch_part(last, end(part), end(part + 1), solution);
+}
+
+/// In the middle of the part and at its ends; and where a parabola through these has its top, if that may be
+/// an extreme of the run, by parabolas through ever closer neighbours, whose error falls with the third power
+/// of their distance. Missed is a second top. `last` is where something was evaluated last; where it is then.
+double Sampler::watch_part(double last, double from, double to, const Interpolant& solution) {
   const auto at = [&](double time) {
     evaluate(last, time, solution);
     last = time;
@@ -116,6 +126,7 @@ void Sampler::watch(double from, double to, const Interpolant& solution) {
       if (std::abs(top - centre) < distance) look_at(top, value_at(top));
     }
   }
+  return last;
 }
 
 void Sampler::keep_extremes(double time) {

@@ -41,6 +41,7 @@ class Sampler {
  private:
   double sample_time(int k) const;
   void evaluate(double last, double time, const Interpolant& solution);
+  double watch_part(double last, double from, double to, const Interpolant& solution);
   void keep_extremes(double time);
 
   const network::Program& program_;
