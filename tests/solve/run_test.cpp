@@ -451,23 +451,30 @@ y = { type = "servo-amplifier", in = ["dy", "-x"], gain = inf, bandwidth = inf, 
 
 // A dyad on a crank's pin and the crank's bearing, which turns with it as a whole: the sides of its triangle
 // stay as they are, but for what steps of the first order take from the crank's circle, and the angle between
-// them is five times as steep. CVODES came into a circle of steps that grew fourfold and failed, 23 million
-// of them.
+// them is some times as steep. CVODES came into a circle of steps that grew fourfold and failed, 10 million
+// of them and more.
 TEST(Run, ComesOutOfStepsThatGrowAndFail) {
-  const auto result = run_of(Compiled(R"toml(
-one  = { type = "constant", value = 1 }
-zero = { type = "constant", value = 0 }
-q    = { type = "crank-generator", speed = "one", rate = 12.566370614359172, start = 2.173067797309707 }
-x    = { type = "summer", in = ["0.8527263934638537*q.cos", "-0.29625324037256506*q.sin"] }
-y    = { type = "summer", in = ["0.29625324037256506*q.cos", "0.8527263934638537*q.sin"] }
-p    = { type = "dyad-rrr", px = "x", py = "y", qx = "zero", qy = "zero", r1 = 0.1886110075217694, r2 = 0.9425852242232519, side = -1, reach = 0.903, gain = 1e6, bandwidth = 200 }
-)toml"),
-                             {.until = 0.5, .tolerance = 1e-10, .samples = 11});
-  EXPECT_LT(result.statistics.steps, 3000);
-  const auto x = row_values(result, "p.x"), y = row_values(result, "p.y");
-  for (std::size_t r = 0; r < x.size(); ++r)
-    EXPECT_NEAR(std::hypot(x[r], y[r]), 0.9425852242232519, 1e-7)
-        << r;  // ten times what loops of 1.3e9/s lag
+  struct Truss {
+    double crank, r1, r2;
+  };
+  for (const auto& [crank, r1, r2] :
+       {Truss{0.9027, 0.1886, 0.9426}, Truss{0.6, 0.54, 0.82}, Truss{0.6, 0.8, 1}}) {
+    const auto result = run_of(Compiled(fmt::format(
+                                   R"toml(
+one  = {{ type = "constant", value = 1 }}
+zero = {{ type = "constant", value = 0 }}
+q    = {{ type = "crank-generator", speed = "one", rate = 6.283185307179586, start = 0.3490658503988659 }}
+x    = {{ type = "summer", in = "{0}*q.cos" }}
+y    = {{ type = "summer", in = "{0}*q.sin" }}
+p    = {{ type = "dyad-rrr", px = "x", py = "y", qx = "zero", qy = "zero", r1 = {1}, r2 = {2}, side = -1, reach = {0}, gain = 1e6, bandwidth = 100 }}
+)toml",
+                                   crank, r1, r2)),
+                               {.until = 1, .tolerance = 1e-10, .samples = 11});
+    EXPECT_LT(result.statistics.steps, 5000) << r1;
+    const auto x = row_values(result, "p.x"), y = row_values(result, "p.y");
+    for (std::size_t r = 0; r < x.size(); ++r)
+      EXPECT_NEAR(std::hypot(x[r], y[r]), r2, 1e-7) << r;  // ten times what loops of 1e9/s lag
+  }
 }
 
 }  // namespace

@@ -179,15 +179,18 @@ int CvodesMemory::take_step(double part) {
 
 /// A change of the step may add an error of which steady steps show nothing: the length of a vector that
 /// turns falls evenly by steps of the first order, and with it what is computed from the length. CVODES then
-/// tries four times the step, fails, and comes back to where it was, before it considers a higher order: for
-/// ever. It is to grow by less where so many of so many steps have failed.
+/// tries four times the step, fails, and comes back to where it was, before some steps of one length let it
+/// consider a higher order: for ever. Where so many of so many steps have failed, some are to be no longer
+/// than the last, and the others no more than twice as long.
 void CvodesMemory::watch_failures() {
-  constexpr long kSteps = 64, kFailures = 24;
-  constexpr double kLess = 2;
-  if (++watched < kSteps) return;
+  constexpr long kSteps = 32, kFailures = 7, kHeld = 12;
+  constexpr double kNoLonger = 1 + 1e-6, kTwice = 2;
+  if (++watched < (holds_step ? kHeld : kSteps)) return;
   long all = 0;
   CVodeGetNumErrTestFails(cvodes.get(), &all);
-  if (all - failed >= kFailures) check_setup(CVodeSetEtaMax(cvodes.get(), kLess));
+  const bool hold = !holds_step && all - failed >= kFailures;
+  if (hold != holds_step) check_setup(CVodeSetEtaMax(cvodes.get(), hold ? kNoLonger : kTwice));
+  holds_step = hold;
   watched = 0;
   failed = all;
 }

@@ -58,8 +58,9 @@ struct CvodesMemory {
   std::vector<double> start_states;
   std::int64_t max_steps;
   std::int64_t steps = 0;
-  long watched = 0;                 ///< steps since the failures were counted last
-  long failed = 0;                  ///< tests of the error until then
+  long watched = 0;  ///< steps since the failures were counted last
+  long failed = 0;   ///< tests of the error until then
+  bool holds_step = false;
   SolverStatistics before_restart;  ///< CVODES counts from its last start
   SmallSteps small_steps;
   bool saw_refusal = false;  ///< these since the last step that was not small
