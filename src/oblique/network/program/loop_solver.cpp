@@ -132,13 +132,33 @@ LoopFailure LoopWorkspace::solve_loop(const LoopCode& loop, std::span<const Inst
     evaluate(body, slots);
     return failure_;
   }
-  failure_ = loop.has_branches() ? solve_branched(loop, body, slots) : solve_unbranched(loop, body, slots);
+  const auto solve = [&] {
+    return loop.has_branches() ? solve_branched(loop, body, slots) : solve_unbranched(loop, body, slots);
+  };
+  const bool first = !solved_;
+  failure_ = solve();
+  if (first && failure_ == LoopFailure::singular && pass_guesses_on(loop, body, slots)) failure_ = solve();
   if (failure_ == LoopFailure::none) {
     failed_.forget();
   } else {
     failed_.note(loop, body, slots, origin_, how);
   }
   return failure_;
+}
+
+/// At the guesses, of which that of a signal is 0, the equations may be singular for no other reason (an
+/// ideal divider by such a signal): each signal is then what its element makes of the others. False where
+/// nothing changes.
+bool LoopWorkspace::pass_guesses_on(const LoopCode& loop, std::span<const Instruction> body, double* slots) {
+  write(loop, slots, origin_);
+  evaluate(body, slots);
+  read(loop, slots, target_);
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    if (loop.natural_scale[i] == 1) target_[eigen_index(i)] -= slots[loop.residual_slots[i]];
+  }
+  if (!target_.allFinite() || target_ == origin_) return false;
+  write(loop, slots, target_);
+  return true;
 }
 
 /// Newton's method, which keeps to the side of a pole on which it begins, and from solution to solution to

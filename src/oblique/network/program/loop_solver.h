@@ -67,6 +67,7 @@ class LoopWorkspace {
   void evaluate(std::span<const Instruction> body, double* slots);
   Search newton(const LoopCode& loop, std::span<const Instruction> body, double* slots,
                 Steps steps = Steps::any);
+  bool pass_guesses_on(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   LoopFailure solve_unbranched(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   LoopFailure solve_beside_fold(const LoopCode& loop, std::span<const Instruction> body, double* slots);
   LoopFailure solve_linear(const LoopCode& loop, std::span<const Instruction> body, double* slots);
