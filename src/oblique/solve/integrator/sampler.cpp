@@ -76,10 +76,13 @@ void Sampler::watch(double from, double to, const Interpolant& solution) {
   constexpr double kFewest = 300;
   if (!options_.extremes) return;
   const double span = options_.until - (options_.from ? options_.from->time : 0);
-  const double parts = std::max(1.0, std::ceil(kFewest * (to - from) / span));
-  const auto end = [&](double part) { return part == parts ? to : from + (to - from) * part / parts; };
-  double last = to;
-  for (double part = 0; part < parts; ++part) last = watch_part(last, end(part), end(part + 1), solution);
+  const int parts = std::max(1, static_cast<int>(std::ceil(kFewest * (to - from) / span)));
+  double last = to, begin = from;
+  for (int part = 1; part <= parts; ++part) {
+    const double end = part == parts ? to : from + (to - from) * part / parts;
+    last = watch_part(last, begin, end, solution);
+    begin = end;
+  }
 }
 
 /// In the middle of the part and at its ends; and where a parabola through these has its top, if that may be
