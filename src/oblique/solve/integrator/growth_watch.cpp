@@ -63,7 +63,7 @@ GrowthWatch::GrowthWatch(OdeSystem& system, const SolverSettings& settings, doub
       stood_(system.size()),
       held_since_(system.size()) {
   for (std::size_t i = 0; i < system.size(); ++i)
-    switch_over_.push_back(absolute_tolerance(i) / settings_.relative_tolerance);
+    switch_over_.push_back(settings_.absolute_tolerance_of(i) / settings_.relative_tolerance);
 }
 
 void GrowthWatch::restart(double t, std::span<const double> x) {
@@ -77,10 +77,6 @@ void GrowthWatch::restart(double t, std::span<const double> x) {
   }
   before_.assign(x.begin(), x.end());
   time_ = t;
-}
-
-double GrowthWatch::absolute_tolerance(std::size_t i) const {
-  return settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
 }
 
 double GrowthWatch::near_distance(std::size_t i, double x) const {
@@ -243,7 +239,8 @@ bool GrowthWatch::leaves_at_once(std::span<const double> x, const std::vector<st
   if (stood && 1 / rate < most) return true;
   double error = 0;
   for (const std::size_t i : states)
-    error = std::max(error, settings_.relative_tolerance * std::abs(x[i]) + absolute_tolerance(i));
+    error =
+        std::max(error, settings_.relative_tolerance * std::abs(x[i]) + settings_.absolute_tolerance_of(i));
   return distance > (stood ? kErrorsOfSteps : kErrors) * error && error / distance / rate < most;
 }
 

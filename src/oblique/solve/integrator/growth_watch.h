@@ -52,7 +52,6 @@ class GrowthWatch {
   const std::vector<UnseenGrowth>& found() const { return found_; }
 
  private:
-  double absolute_tolerance(std::size_t i) const;       ///< [machine unit]
   double near_distance(std::size_t i, double x) const;  ///< [machine unit]
   bool is_near_zero(std::size_t i, double x) const;
   double own_growth(std::size_t state) const;

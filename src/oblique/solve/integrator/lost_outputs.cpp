@@ -39,12 +39,8 @@ LostOutputs::LostOutputs(const diagram::FlatDiagram& diagram, OdeSystem& system,
       values_(diagram.outputs.size()),
       moved_(diagram.outputs.size()) {}
 
-double LostOutputs::absolute_tolerance(std::size_t i) const {
-  return settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
-}
-
 double LostOutputs::error_of_state(std::size_t i, double x) const {
-  return kErrors * (settings_.relative_tolerance * std::abs(x) + absolute_tolerance(i));
+  return kErrors * (settings_.relative_tolerance * std::abs(x) + settings_.absolute_tolerance_of(i));
 }
 
 /// Whether what the states were moved by has taken the last digit of an output.
@@ -96,7 +92,7 @@ void LostOutputs::find_decayed(double t, std::span<const double> x) {
   off_states_.assign(x.begin(), x.end());
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double error = error_of_state(i, x[i]), size = std::abs(x[i]);
-    if (size == 0 || settings_.relative_tolerance * size > absolute_tolerance(i) ||
+    if (size == 0 || settings_.relative_tolerance * size > settings_.absolute_tolerance_of(i) ||
         std::abs(rates[i]) * kSoon * span_ > std::max(size, error))
       continue;
     for (const double off : {error, -error}) {

@@ -47,7 +47,6 @@ class LostOutputs {
     double time = -1;  ///< [s]; below zero where that has not been
     double value = 0, moved = 0;
   };
-  double absolute_tolerance(std::size_t i) const;
   double error_of_state(std::size_t i, double x) const;
   bool is_lost(std::size_t output) const;
   bool is_moved_by(std::size_t output, double part) const;

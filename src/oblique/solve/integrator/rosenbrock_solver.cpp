@@ -102,16 +102,12 @@ bool RosenbrockSolver::evaluate(double clock, std::span<const double> x, std::sp
   return false;
 }
 
-/// Of a state: its tolerance, with `size` its magnitude.
-double RosenbrockSolver::unit(std::size_t i) const {
-  return settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
-}
-
 /// In which the states change by a part of themselves, or of what is small beside a machine unit.
 double RosenbrockSolver::first_step() const {
   double size = 0, rate = 0;
   for (std::size_t i = 0; i < n_; ++i) {
-    const double weight = 1 / (unit(i) + settings_.relative_tolerance * std::abs(x_[i]));
+    const double weight =
+        1 / (settings_.absolute_tolerance_of(i) + settings_.relative_tolerance * std::abs(x_[i]));
     size = std::max(size, std::abs(x_[i]) * weight);
     rate = std::max(rate, std::abs(rates_[i]) * weight);
   }
@@ -220,7 +216,8 @@ bool RosenbrockSolver::take_differences(double clock, std::span<const double> x)
   if (!evaluate(clock, x, here)) return false;
   const double part = std::sqrt(kEpsilon);
   for (std::size_t j = 0; j < n_; ++j) {
-    const double size = std::max(std::abs(x[j]), unit(j) / settings_.relative_tolerance);
+    const double size =
+        std::max(std::abs(x[j]), settings_.absolute_tolerance_of(j) / settings_.relative_tolerance);
     bool known = false;
     for (const double change : {part * size, -part * size}) {
       moved[j] = x[j] + change;
@@ -283,7 +280,8 @@ std::vector<double> RosenbrockSolver::weighted_errors() const {
   const double* const last = stages_.data() + (Rodas5p::kStages - 1) * n_;
   for (std::size_t i = 0; i < n_; ++i) {
     const double size = std::max(std::abs(x_[i]), std::abs(after_[i]));
-    errors[i] = std::abs(last[i]) / (unit(i) + settings_.relative_tolerance * size);
+    errors[i] =
+        std::abs(last[i]) / (settings_.absolute_tolerance_of(i) + settings_.relative_tolerance * size);
   }
   return errors;
 }
@@ -293,7 +291,8 @@ double RosenbrockSolver::error_of(std::span<const double> difference) const {
   double largest = 0;
   for (std::size_t i = 0; i < n_; ++i) {
     const double size = std::max(std::abs(x_[i]), std::abs(after_[i]));
-    largest = std::max(largest, std::abs(difference[i]) / (unit(i) + settings_.relative_tolerance * size));
+    largest = std::max(largest, std::abs(difference[i]) / (settings_.absolute_tolerance_of(i) +
+                                                           settings_.relative_tolerance * size));
   }
   return largest;
 }

@@ -47,7 +47,6 @@ class RosenbrockSolver final : public Solver {
   double error_of(std::span<const double> difference) const;
   void find_between();
   bool look_between(double h);
-  double unit(std::size_t i) const;
   void take(double h);
   double time_of(double clock) const { return clock >= length_ ? end_ : start_ + clock; }
   bool has_moved() const;

@@ -51,12 +51,9 @@ SmallStates::SmallStates(OdeSystem& system, const SolverSettings& settings, doub
       off_states_(system.size()),
       held_(system.size(), false) {}
 
-double SmallStates::tolerance_of(std::size_t i) const {
-  return settings_.own_tolerances.empty() ? settings_.absolute_tolerance : settings_.own_tolerances[i];
-}
-
 bool SmallStates::is_small(std::size_t i) const {
-  return peaks_[i] > 0 && peaks_[i] < kSmall * tolerance_of(i) / settings_.relative_tolerance;
+  return peaks_[i] > 0 &&
+         peaks_[i] < kSmall * settings_.absolute_tolerance_of(i) / settings_.relative_tolerance;
 }
 
 void SmallStates::advance(double t, std::span<const double> x) {
@@ -79,7 +76,7 @@ void SmallStates::look(double t, std::span<const double> x) {
   const bool known = system_.derivatives(t, x.data(), rates.data());
   const auto let_all_err_by = [&](double part, std::vector<double>& left, double part_of_held = 0) {
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const double error = part * x[i] + (held_[i] ? part_of_held * tolerance_of(i) : 0);
+      const double error = part * x[i] + (held_[i] ? part_of_held * settings_.absolute_tolerance_of(i) : 0);
       off_states_[i] = x[i] + (i % 2 == 0 ? error : -error);
     }
     if (!known || !system_.derivatives(t, off_states_.data(), rates_off.data())) return;
@@ -90,7 +87,7 @@ void SmallStates::look(double t, std::span<const double> x) {
 
   for (const std::size_t i : small) {
     std::vector<double> off(x.size(), 0.0);
-    off[i] = kErrorOfState * tolerance_of(i);
+    off[i] = kErrorOfState * settings_.absolute_tolerance_of(i);
     read(t, x, i, off);
   }
   const network::SparsePattern& pattern = system_.pattern();
@@ -110,7 +107,7 @@ void SmallStates::look(double t, std::span<const double> x) {
     if (factors.sign() == 0) continue;
     for (const std::size_t i : small) {
       Eigen::VectorXd error = Eigen::VectorXd::Zero(n);
-      error[static_cast<Eigen::Index>(i)] = kErrorOfState * tolerance_of(i);
+      error[static_cast<Eigen::Index>(i)] = kErrorOfState * settings_.absolute_tolerance_of(i);
       const Eigen::VectorXd off = factors.solve(error);
       read(t, x, i, {off.begin(), off.end()});
     }

@@ -48,7 +48,6 @@ class SmallStates {
   std::vector<SmallState> found() const;
 
  private:
-  double tolerance_of(std::size_t i) const;
   bool is_small(std::size_t i) const;
   void look(double t, std::span<const double> x);
   void read(double t, std::span<const double> x, std::size_t state, const std::vector<double>& off);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -22,6 +23,11 @@ struct SolverSettings {
   diagram::IntegrationMethod method = diagram::IntegrationMethod::bdf;
   std::vector<double> own_tolerances = {};  ///< [machine unit] of each state, where not all have that one
   double asked = 1e-8;                      ///< relative tolerance of the run; the solver's is tighter
+
+  /// The absolute tolerance of a state [machine unit].
+  double absolute_tolerance_of(std::size_t state) const {
+    return own_tolerances.empty() ? absolute_tolerance : own_tolerances[state];
+  }
 };
 
 /// Why a solver could not go on.
