@@ -93,5 +93,24 @@ TEST(Sources, AreProductsOfManyFactors) {
   }
 }
 
+// One that acts on a loop that is not linear, by itself or through a linear loop, is known as such; no other
+// is.
+TEST(Sources, AreToldFromThoseThatActOnBranches) {
+  const auto on_branch = [](const std::string& loop) {
+    const Compiled made("u = { type = \"sine-source\", frequency = 3 }\n" + loop);
+    return std::ranges::count_if(made.program.sources(), &Source::on_branch);
+  };
+  EXPECT_EQ(on_branch("x = { type = \"integrator\", in = [\"u\"] }\n"), 0);
+  const std::string linear =
+      "l = { type = \"summer\", in = [\"u\", \"0.5*m\"] }\nm = { type = \"summer\", in = [\"-l\"] }\n";
+  EXPECT_EQ(on_branch(linear), 0);
+  const auto bent = [](const std::string& in) {
+    return "y = { type = \"summer\", in = [\"" + in +
+           "\", \"-0.5*q\"] }\nq = { type = \"squarer\", in = \"y\" }\n";
+  };
+  EXPECT_EQ(on_branch(bent("u")), 1);
+  EXPECT_EQ(on_branch(linear + bent("m")), 1);
+}
+
 }  // namespace
 }  // namespace oblique::network

@@ -2,6 +2,7 @@
 #include <oblique/solve/events/loop_jumps.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -515,6 +516,34 @@ y = {}
 )toml",
                                                                                               phase, start));
       truth(phase, run_of(Compiled("y = { type = \"corner\" }", "", library), {.until = 10}));
+    }
+  }
+}
+
+// y = lim(u + g y²) of a fast u = a sin(ωt + 20°), a hundred turns of it over 38 rows. From below it goes
+// along y = (1 − √(1 − 4 g u))/(2 g) until that ends at u = 1/(4 g), and jumps to the limit; this it leaves
+// at u = 1 − g. Rows tell nothing of a turn that lies between them, and with g = 0.6 and a = 0.5 the jump
+// takes a quarter of one.
+TEST(LoopJumps, GoWhereABranchEndsBetweenTheRows) {
+  constexpr double kTurns = 100, kPhase = 20 * std::numbers::pi / 180;
+  struct Case {
+    double amplitude, gain;
+  };
+  for (const auto& [amplitude, gain] : {Case{0.5, 0.6}, Case{1, 0.6}, Case{1, 1.8}, Case{5, 1.8}}) {
+    const Compiled made(
+        fmt::format(R"toml(u = {{ type = "sine-source", amplitude = {}, frequency = {}, phase = {} }}
+q = {{ type = "squarer", in = "y" }}
+s = {{ type = "summer", in = ["u", "{}*q"] }}
+y = {{ type = "limiter", in = "s", low = -1, high = 1 }}
+)toml",
+                    amplitude, kTurns, kPhase, gain));
+    const std::vector<double> y = row_values(run_of(made, {.samples = 38}), "y");
+    for (std::size_t row = 0; row < y.size(); ++row) {
+      const double angle = 2 * std::numbers::pi * kTurns * static_cast<double>(row) / 37 + kPhase;
+      const double u = amplitude * std::sin(angle), end = 1 / (4 * gain), back = 1 - gain;
+      const bool is_at_limit = u > end || (u > back && std::cos(angle) < 0);
+      const double below = is_at_limit ? 1 : (1 - std::sqrt(1 - 4 * gain * u)) / (2 * gain);
+      EXPECT_NEAR(y[row], std::max(-1.0, below), kNewton) << amplitude << ", " << gain << ", row " << row;
     }
   }
 }

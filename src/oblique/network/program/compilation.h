@@ -29,6 +29,7 @@ struct Compilation {
     bool acts, by_states;
     std::optional<std::uint32_t> switch_index;
     std::vector<Mask> masks;
+    bool on_branch = false;
   };
 
   Needs no_needs() const;

@@ -33,6 +33,7 @@ struct Source {
   /// Of one by states what masks this switch, but no switch that is such a source itself: of two that mask
   /// each other both are looked at.
   std::vector<Mask> masks;
+  bool on_branch = false;  ///< acts on an algebraic loop that is not linear: its solution may end or leap
 };
 
 /// What a Program consists of: the tape, and where on it and on its slots everything stands. Compilation

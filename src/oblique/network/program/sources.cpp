@@ -5,7 +5,10 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <oblique/network/program/tangents.h>
 
@@ -310,6 +313,53 @@ std::optional<std::vector<NodeId>> turning_rates(Compilation& c, const std::vect
   return rates;
 }
 
+/// Whether one of these nodes depends on an unknown of a loop. Of each node `asked` is the last loop for
+/// which this was asked.
+bool any_depends_on_loop(const Compilation& c, std::vector<NodeId> left, std::size_t loop,
+                         std::vector<std::optional<std::size_t>>& asked) {
+  while (!left.empty()) {
+    const NodeId id = left.back();
+    left.pop_back();
+    if (std::exchange(asked[id], loop) == loop) continue;
+    const Node node = c.network.graph[id];
+    if (node.op == Op::variable && c.is_unknown(node.variable) &&
+        c.loop_of_unknown[c.unknown_of(node.variable)] == loop)
+      return true;
+    for (int i = 0; i < operand_count(node.op); ++i) left.push_back(node.operand(i));
+  }
+  return false;
+}
+
+/// The nodes on which the solution of a loop that is not linear depends, through other loops too.
+std::vector<bool> nodes_below_branches(const Compilation& c) {
+  std::vector<NodeId> left;
+  std::vector<std::optional<std::size_t>> asked(c.network.graph.size());
+  for (std::size_t loop = 0; loop < c.network.loops.size(); ++loop) {
+    std::vector<NodeId> residuals, slopes;
+    for (const std::size_t u : c.network.loops[loop].unknowns) {
+      residuals.push_back(c.network.unknowns[u].residual);
+      for (const auto& [variable, slope] : c.residual_gradients[u]) {
+        if (c.is_unknown(variable) && c.loop_of_unknown[c.unknown_of(variable)] == loop)
+          slopes.push_back(slope);
+      }
+    }
+    if (any_depends_on_loop(c, std::move(slopes), loop, asked))
+      left.insert(left.end(), residuals.begin(), residuals.end());
+  }
+  std::vector<bool> found(c.network.graph.size());
+  while (!left.empty()) {
+    const NodeId id = left.back();
+    left.pop_back();
+    if (found[id]) continue;
+    found[id] = true;
+    const Node node = c.network.graph[id];
+    for (int i = 0; i < operand_count(node.op); ++i) left.push_back(node.operand(i));
+    if (node.op == Op::variable && c.is_unknown(node.variable))
+      left.push_back(c.network.unknowns[c.unknown_of(node.variable)].residual);
+  }
+  return found;
+}
+
 }  // namespace
 
 void find_sources(Compilation& c) {
@@ -354,11 +404,12 @@ void find_sources(Compilation& c) {
   });
   c.turning_rates = turning_rates(c, acts, follows, derivatives);
   find_bent_comparisons(c, follows);
+  const std::vector<bool> below_branches = nodes_below_branches(c);
   std::map<NodeId, std::size_t> source_of;
   for (NodeId id = 0; id < size; ++id) {
     if (!is_root[id] || follows[id] != Follows::time) continue;
     source_of.emplace(id, c.sources.size());
-    c.sources.push_back({id, derivatives.of(id), acts[id], false, std::nullopt, {}});
+    c.sources.push_back({id, derivatives.of(id), acts[id], false, std::nullopt, {}, below_branches[id]});
   }
   for (std::size_t s = 0; s < c.network.switches.size(); ++s) {
     const auto same = source_of.find(c.network.switches[s].event_function);
@@ -389,7 +440,7 @@ void write_sources(Compilation& c) {
   }
   for (const Compilation::FoundSource& source : c.sources)
     c.code.sources.push_back({c.writer->slot(source.value), c.writer->slot(source.derivative), source.acts,
-                              source.by_states, source.switch_index, source.masks});
+                              source.by_states, source.switch_index, source.masks, source.on_branch});
 }
 
 }  // namespace oblique::network

@@ -90,8 +90,9 @@ BranchWatch::BranchWatch(const network::Program& program, network::Workspace& wo
   }
 }
 
-std::optional<double> BranchWatch::find(double from, double to, const Interpolant& solution) {
-  return unseen_ ? search(from, to, apart_, solution) : std::nullopt;
+std::optional<double> BranchWatch::find(double from, std::span<const double> times,
+                                        const Interpolant& solution) {
+  return unseen_ ? search(from, times, apart_, solution) : std::nullopt;
 }
 
 void BranchWatch::stand_at(double t) {
@@ -111,36 +112,40 @@ bool BranchWatch::leaps() {
   return leapt;
 }
 
-std::optional<double> BranchWatch::search(double from, double to, double longest,
+std::optional<double> BranchWatch::search(double from, std::span<const double> times, double longest,
                                           const Interpolant& solution) {
   std::vector<double> states(program_.n_states()), signals(program_.n_signals());
   const auto has_value = [&](double t) {
     solution.states_at(t, states);
     return program_.signals(t, states.data(), signals.data(), workspace_).has_value();
   };
-  double t = from, step = std::min(longest, to - from);
+  double t = from, step = longest;
   bool stands = has_value(from);  // the unknowns may come from elsewhere
   if (!stands && from == reached_) {
     for (std::size_t u = 0; u < stood_.size(); ++u) workspace_.set_unknown(u, stood_[u]);
     stands = has_value(from);
   }
-  while (t < to) {
-    const double target = step < to - t ? t + step : to;
+  for (auto next = times.begin(); next != times.end();) {
+    if (!(*next > t)) {
+      ++next;
+      continue;
+    }
+    const double target = step < *next - t ? t + step : *next;
     stand_at(t);
     const bool known = has_value(target), leapt = known && stands && leaps();
     if (known && !leapt) {
       stands = true;
       t = target;
       step = std::min(2 * step, longest);
-    } else if (!leapt && workspace_.trouble().failure != network::LoopFailure::lost) {
-      break;  // whoever looks there next says what is wrong
-    } else if (target - t <= resolution_) {
+    } else if (target - t > resolution_) {
+      step = (target - t) / 2;
+    } else if (leapt || workspace_.trouble().failure == network::LoopFailure::lost) {
       return target;
     } else {
-      step = (target - t) / 2;
+      break;  // whoever looks there next says what is wrong
     }
   }
-  if (t == to) stand_at(to);
+  if (!times.empty() && t == times.back()) stand_at(t);
   return std::nullopt;
 }
 
@@ -156,7 +161,8 @@ BranchWatch::Ahead BranchWatch::look_ahead(double& t, double segment_end, std::v
   const bool twice = tried_ && t <= *tried_;
   tried_ = t;
   const double sight = (twice ? 1e-6 : 1e-9) * span_;
-  const auto end = search(t, std::min(t + sight, segment_end), sight, ahead);
+  const double far = std::min(t + sight, segment_end);
+  const auto end = search(t, {&far, 1}, sight, ahead);
   if (!end) return twice ? Ahead::nothing : Ahead::not_yet;
   ahead.states_at(*end, states);
   t = *end;

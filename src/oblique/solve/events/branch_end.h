@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,9 +45,11 @@ class BranchWatch {
   BranchWatch(const network::Program& program, network::Workspace& workspace, double begin,
               const RunOptions& options, const std::string& file);
 
-  /// The first time in (from, to] without a solution on its branch, to 1e-10 of the run, of loops that no
-  /// derivative needs (of others the solver finds no step across it); nothing where there is none.
-  std::optional<double> find(double from, double to, const Interpolant& solution);
+  /// The first time behind `from`, up to the last of these, without a solution on its branch, to 1e-10 of the
+  /// run, of loops that no derivative needs (of others the solver finds no step across it); nothing where
+  /// there is none. Each of the `times`, which ascend, is looked at: they are to show what the time alone
+  /// does.
+  std::optional<double> find(double from, std::span<const double> times, const Interpolant& solution);
 
   /// The last time that is sure to lie before an end that was found.
   double before(double end) const { return end - resolution_; }
@@ -80,7 +83,8 @@ class BranchWatch {
   const std::vector<text::Diagnostic>& warnings() const { return warnings_; }
 
  private:
-  std::optional<double> search(double from, double to, double longest, const Interpolant& solution);
+  std::optional<double> search(double from, std::span<const double> times, double longest,
+                               const Interpolant& solution);
   void stand_at(double t);
   bool leaps();
 

@@ -133,7 +133,7 @@ void Segments::take_step(double from, double t, std::span<const double> sample_t
 
 /// Ends what is left of the step where the branch of a loop ends that no derivative needs.
 void Segments::find_branch_end() {
-  step_.branch_end = parts_.branches.find(step_.begin, step_.end, *step_.solution);
+  step_.branch_end = parts_.branches.find(step_.begin, step_.times_left(), *step_.solution);
   if (!step_.branch_end) return;
   step_.end = std::max(step_.begin, parts_.branches.before(*step_.branch_end));
   std::erase_if(step_.times, [&](double sample_time) { return !(sample_time < step_.end); });
@@ -239,7 +239,7 @@ bool Segments::stands(double t) {
 void Segments::pass_end(double& t, std::optional<double> branch_end, bool settled) {
   if (branch_end) {
     const bool turns = turns_before(t, *branch_end, *step_.solution);
-    if (!turns) parts_.branches.find(t, *branch_end, *step_.solution);  // it jumps from the last place on it
+    if (!turns) parts_.branches.find(t, {&*branch_end, 1}, *step_.solution);  // it jumps from the last place
     t = *branch_end;
     step_.solution->states_at(t, parts_.states);
     if (turns)

@@ -16,6 +16,11 @@ namespace {
 /// A source that varies within a part of a step by this much of its size is told by its values at the ends.
 constexpr double kSmooth = 0.25;
 
+/// One that acts on an algebraic loop with branches goes hardly further within a part than its ends show: of
+/// what they show, and of its largest value. Beyond may lie the end of a branch, from which the loop does not
+/// come back.
+constexpr double kPlainOnBranch = 1.1, kSameOnBranch = 1e-3;
+
 /// What is below this part of the largest value that a source has had is nothing.
 constexpr double kNothing = 1e-9;
 
@@ -186,7 +191,9 @@ SourceWatch::Hidden SourceWatch::hidden(double from, const Values& at_from, doub
       continue;
     }
     const double shown =
-        2 * std::abs(b - a) + kSmooth * std::min(std::abs(a), std::abs(b)) + kNothing * largest_[k];
+        watched_[k].on_branch
+            ? kPlainOnBranch * std::abs(b - a) + kSameOnBranch * largest_[k]
+            : 2 * std::abs(b - a) + kSmooth * std::min(std::abs(a), std::abs(b)) + kNothing * largest_[k];
     const bool beyond = !std::isfinite(a) && !std::isfinite(b);
     if (depth >= kDeepestUnknown && !std::isfinite(value.width()) && (watched_[k].by_states || beyond))
       continue;
