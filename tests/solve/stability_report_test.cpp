@@ -59,6 +59,23 @@ x = { type = "integrator", in = ["p"], initial = 1 }
   EXPECT_EQ(verdict_along({-0.5, -0.5}), StabilityVerdict::stable);
 }
 
+// What grows by less than a billionth over the whole run stands still.
+TEST(StabilityReport, TakesAPoleThatTheRunDoesNotShowForNone) {
+  const auto verdict_of = [](const char* rate, double until) {
+    const Compiled made(std::string("k = { type = \"constant\", value = ") + rate + R"toml( }
+p = { type = "multiplier", in = ["k", "x"] }
+x = { type = "integrator", in = ["p"], initial = 1 }
+)toml");
+    const SignalFlow flow(made.flat, made.program);
+    return judge_stability(made.program, flow,
+                           {Instant{0, made.program.start()}, Instant{until, made.program.start()}})
+        .verdict;
+  };
+  EXPECT_EQ(verdict_of("0.9e-10", 10), StabilityVerdict::undamped);
+  EXPECT_EQ(verdict_of("1.1e-10", 10), StabilityVerdict::grows);
+  EXPECT_EQ(verdict_of("1e-10", 1000), StabilityVerdict::grows);
+}
+
 // x = 1/a has no derivative where a is 0.
 TEST(StabilityReport, TellsOfAnInstantWithoutALinearisation) {
   const Compiled made(R"toml(one = { type = "constant" }

@@ -18,6 +18,8 @@ namespace {
 constexpr std::size_t kMostReported = kMostStatesForModes;
 constexpr std::size_t kMostStatesForMargins = 60;
 constexpr double kRoundingOfDamping = 1e-9;  ///< of a damping ratio
+constexpr double kRoundingOfGrowth =
+    1e-9;  ///< over the whole run, in powers of e: far below what a run shows
 /// Instants times n³ that are given to the QR algorithm, some seconds.
 constexpr double kMostReportWork = 2e8;
 constexpr std::size_t kInstantsOfLargeGroups = 3;
@@ -134,8 +136,12 @@ class Judge {
   void judge_group(Group& group, double t) {
     group.machine = ideal_->differs_in(group.states);
     const bool large = group.states.size() > kMostReported;
-    const std::vector<Mode> modes = large ? rightmost_modes(group.last, group.states)
-                                          : modes_of(Eigen::MatrixXd(group.last), group.states);
+    std::vector<Mode> modes = large ? rightmost_modes(group.last, group.states)
+                                    : modes_of(Eigen::MatrixXd(group.last), group.states);
+    const double run = instants_.back().t - instants_.front().t;
+    for (Mode& mode : modes) {
+      if (run > 0) mode.rounding = std::max(mode.rounding, kRoundingOfGrowth / run);
+    }
     if (large) group.proven = (group.proven || !group.seen) && is_proven_stable(group.last);
     std::vector<std::optional<Complex>> ideal(modes.size());
     if (group.machine) ideal = ideal_->problem_modes(group.states, modes);
