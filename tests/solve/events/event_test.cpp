@@ -551,5 +551,26 @@ x = {{ type = "integrator", in = ["0*one"], start = "back" }}
   }
 }
 
+// A pendulum whose sine comes from a table of 3001 points: a step of Rodas5P passes many of them, one after
+// the other, and none at one place. Its energy is kept.
+TEST(Events, ManyInAStepAreNotOneThatRepeats) {
+  constexpr int kPoints = 3001;
+  std::string points;
+  for (int k = 0; k < kPoints; ++k) {
+    const double x = -1.2 + 2.4 * k / (kPoints - 1);
+    points += fmt::format("{}[{:.17g}, {:.17g}]", k == 0 ? "" : ", ", x, std::sin(x));
+  }
+  const Compiled made(R"(x = { type = "integrator", in = ["v"], initial = 1 }
+v = { type = "integrator", in = ["-f"] }
+f = { type = "function-generator", in = "x", points = [)" +
+                      points + "] }\n");
+  const auto result = run_of(
+      made, {.until = 3, .tolerance = 1e-6, .samples = 4, .method = diagram::IntegrationMethod::rodas});
+  const std::vector<double> x = row_values(result, "x"), v = row_values(result, "v");
+  // the table is off by 1e-7, the run by a hundred tolerances at most
+  for (std::size_t row = 0; row < x.size(); ++row)
+    EXPECT_NEAR(v[row] * v[row] / 2 - std::cos(x[row]), -std::cos(1.0), 1e-4);
+}
+
 }  // namespace
 }  // namespace oblique::solve

@@ -240,6 +240,7 @@ std::optional<EventSearch::Found> EventSearch::search(double from, std::span<con
                solution, right);
       if (auto found = between(left, right, solution)) {
         nearest_ = 0;
+        note_way_to(*found, left.time, solution, right);
         return found;
       }
       std::swap(left, right);
@@ -256,6 +257,18 @@ void EventSearch::pass(Sample& at) {
   for (double& value : at.crossed) value = std::min(value, 0.0);
   for (std::size_t s = 0; s < at.event_functions.size(); ++s)
     thresholds_.note_excursion(s, at.event_functions[s]);
+}
+
+/// Notes how far from its place what has been found was on the way from a time at which it has turned over,
+/// where no sample lies between: one that passes many levels in a step does not turn over at one place.
+void EventSearch::note_way_to(const Found& found, double from, const Interpolant& solution, Sample& middle) {
+  const bool is_noted = std::all_of(found.turned.begin(), found.turned.end(), [&](const auto& turned) {
+    return thresholds_.excursion(turned.first) > 0;
+  });
+  if (is_noted || !(found.time > from)) return;
+  sample(from + (found.time - from) / 2, solution, middle);
+  for (const auto& turned : found.turned)
+    thresholds_.note_excursion(turned.first, middle.event_functions[turned.first]);
 }
 
 /// Notes on which side every event function lies that may turn over, and takes its slack from those that are

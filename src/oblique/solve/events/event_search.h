@@ -78,6 +78,7 @@ class EventSearch {
   Found locate(Sample from, Sample to, const Interpolant& solution);
   double edge_of_slide(const Sample& beyond, const Interpolant& solution);
   void pass(Sample& at);
+  void note_way_to(const Found& found, double from, const Interpolant& solution, Sample& middle);
   void leave_behind(Sample& at);
   void let_go(Sample& at, const Interpolant& solution);
 
