@@ -10,10 +10,13 @@
 #include <fmt/format.h>
 
 #include <oblique/text/expression_parser.h>
+#include <oblique/text/interval.h>
 #include <oblique/text/partial_derivative.h>
 
 namespace oblique::mechanism {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool names_time(const text::Expression& e) {
   return (e.kind == text::Expression::Kind::name && e.name == "time") ||
@@ -100,8 +103,24 @@ Dual evaluate_at(const text::Expression& e, double time) {
   return result;
 }
 
-/// Gauss and Kronrod's rule with 7 and 15 points on [a, b]; both sums.
-std::array<double, 2> gauss_kronrod(const Drive& drive, double a, double b) {
+/// The range of a law, or what holds it, over a time.
+text::Interval range_over(const text::Expression& e, const text::Interval& time) {
+  using Kind = text::Expression::Kind;
+  if (e.kind == Kind::number) return {e.number, e.number};
+  if (e.kind == Kind::name && e.name == "time") return time;
+  if (e.kind == Kind::name) return {value_of_name(e, 0), value_of_name(e, 0)};
+  const text::Interval a = range_over(e.operands[0], time);
+  return text::evaluate(operation_of(e), a,
+                        e.operands.size() > 1 ? range_over(e.operands[1], time) : text::Interval{});
+}
+
+/// Gauss and Kronrod's rule with 7 and 15 points on [a, b]: both sums, and the values of the law that were
+/// seen.
+struct Sums {
+  double kronrod = 0, gauss = 0;
+  text::Interval seen;
+};
+Sums gauss_kronrod(const Drive& drive, double a, double b) {
   constexpr std::array kNodes{0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
                               0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
                               0.586087235467691130294144691258287, 0.405845151377397166906606412076961,
@@ -113,14 +132,22 @@ std::array<double, 2> gauss_kronrod(const Drive& drive, double a, double b) {
   constexpr std::array kGauss{0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
                               0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
   const double middle = (a + b) / 2, half = (b - a) / 2;
-  double kronrod = 0, gauss = 0;
+  double kronrod = 0, gauss = 0, low = kInfinity, high = -kInfinity;
+  const auto value = [&](double time) {
+    const double speed = value_at(*drive.law, time);
+    low = std::min(low, speed);
+    high = std::max(high, speed);
+    return speed;
+  };
   for (std::size_t i = 0; i < kNodes.size(); ++i) {
-    double sum = value_at(*drive.law, middle + half * kNodes[i]);
-    if (kNodes[i] != 0) sum += value_at(*drive.law, middle - half * kNodes[i]);
+    double sum = value(middle + half * kNodes[i]);
+    if (kNodes[i] != 0) sum += value(middle - half * kNodes[i]);
     kronrod += kKronrod[i] * sum;
     if (i % 2 == 1) gauss += kGauss[i / 2] * sum;
   }
-  return {kronrod * half, gauss * half};
+  value(a);
+  value(b);
+  return {kronrod * half, gauss * half, {low, high}};
 }
 
 /// The width of the intervals whose ways are kept [s]: a second, or more where the motion takes hours.
@@ -130,21 +157,39 @@ double panel_of(const Mechanism& mechanism) {
   return least > 1 ? std::exp2(std::ceil(std::log2(least))) : 1;
 }
 
-constexpr int kMostHalvings = 12;
+/// Whether a law does nothing over [a, b] that the values `seen` do not show: bounds say so, or that it is
+/// too little to matter.
+bool is_shown(const Drive& drive, double a, double b, const text::Interval& seen) {
+  constexpr double kPlain = 2;      // of what was seen
+  constexpr double kLittle = 1e-6;  // of the speed
+  const text::Interval range = range_over(*drive.law, {std::min(a, b), std::max(a, b)});
+  const double size = std::max(std::abs(seen.low), std::abs(seen.high));
+  return range.width() <= kPlain * seen.width() + kLittle * size;
+}
+
+/// So often a panel is halved where the rules differ, and where bounds tell nothing; each part beyond is
+/// taken from those that there are for the whole motion, and what each panel adds.
+constexpr int kHalvings = 12, kHalvingsForBounds = 6, kMostHalvings = 40;
+constexpr int kMostParts = 100'000, kPartsOfPanel = 256;
 
 /// Over [a, b], piece by piece from a on; `done` is told the end of each piece and the integral over it.
 template <class Done>
-void integrate(const Drive& drive, double a, double b, const Done& done, int halvings = kMostHalvings) {
-  const auto [fine, coarse] = gauss_kronrod(drive, a, b);
+void integrate(const Drive& drive, double a, double b, const Done& done, int& parts_left, int halvings = 0) {
+  const Sums sums = gauss_kronrod(drive, a, b);
   // the coarse rule errs by this, the fine one by about its square
   constexpr double kAgree = 1e-9;
-  if (halvings == 0 || !(std::abs(fine - coarse) > kAgree * std::abs(fine))) {
-    done(b, fine);
+  const double middle = (a + b) / 2;
+  const bool agree = !(std::abs(sums.kronrod - sums.gauss) > kAgree * std::abs(sums.kronrod));
+  const bool is_free = halvings < (agree ? kHalvingsForBounds : kHalvings);
+  const bool may_halve = is_free || (halvings < kMostHalvings && parts_left > 0);
+  const bool is_known = std::isfinite(sums.kronrod);
+  if (!is_known || !may_halve || middle == a || middle == b || (agree && is_shown(drive, a, b, sums.seen))) {
+    done(b, sums.kronrod);
     return;
   }
-  const double middle = (a + b) / 2;
-  integrate(drive, a, middle, done, halvings - 1);
-  integrate(drive, middle, b, done, halvings - 1);
+  if (!is_free) --parts_left;
+  integrate(drive, a, middle, done, parts_left, halvings + 1);
+  integrate(drive, middle, b, done, parts_left, halvings + 1);
 }
 
 }  // namespace
@@ -167,6 +212,7 @@ DriveState law_at(const Drive& drive, double t) {
 DriveClock::DriveClock(const Mechanism& mechanism)
     : mechanism_(mechanism),
       panel_(panel_of(mechanism)),
+      parts_left_(kMostParts),
       forward_(mechanism.drives.size(), {0}),
       backward_(mechanism.drives.size(), {0}),
       last_(mechanism.drives.size()) {}
@@ -183,9 +229,13 @@ double DriveClock::way(std::size_t d, double t) {
     last.panel = panel * static_cast<double>(k);
     last.step = panel;
     last.all = {{last.panel, kept[k]}};
-    integrate(drive, last.panel, last.panel + panel, [&](double end, double integral) {
-      last.all.push_back({end, last.all.back().way + drive.law_scale * integral});
-    });
+    parts_left_ = std::min(parts_left_ + kPartsOfPanel, kMostParts);
+    integrate(
+        drive, last.panel, last.panel + panel,
+        [&](double end, double integral) {
+          last.all.push_back({end, last.all.back().way + drive.law_scale * integral});
+        },
+        parts_left_);
     if (kept.size() == k + 1) kept.push_back(last.all.back().way);
   };
   while (kept.size() <= whole) enter(kept.size() - 1);
@@ -194,8 +244,8 @@ double DriveClock::way(std::size_t d, double t) {
                                       [](double time, const Piece& p) { return time < std::abs(p.from); });
   const Piece& piece = *(after - 1);
   double way = piece.way;
-  if (t != piece.from)
-    integrate(drive, piece.from, t, [&](double, double integral) { way += drive.law_scale * integral; });
+  // Within a piece one rule does.
+  if (t != piece.from) way += drive.law_scale * gauss_kronrod(drive, piece.from, t).kronrod;
   return way;
 }
 

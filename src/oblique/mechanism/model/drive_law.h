@@ -33,8 +33,9 @@ std::optional<SpeedLaw> parse_law(std::string_view text, const text::Unit& unit)
 DriveState law_at(const Drive& drive, double t);
 
 /// The drives of a mechanism over time. The values of laws are integrated from time 0 by Gauss and Kronrod's
-/// 7 and 15 points on intervals that are halved until both agree to rounding; what was integrated is kept, so
-/// one object serves one thread.
+/// 7 and 15 points on intervals that are halved until both agree to rounding, and until interval arithmetic
+/// bounds the speed by what those points show: a short peak between them is not passed over. What was
+/// integrated is kept, so one object serves one thread.
 class DriveClock {
  public:
   explicit DriveClock(const Mechanism& mechanism);
@@ -65,6 +66,7 @@ class DriveClock {
 
   const Mechanism& mechanism_;
   double panel_;                              ///< width of the intervals whose ways are kept [s]
+  int parts_left_;                            ///< that a law may be looked at in
   std::vector<std::vector<double>> forward_;  ///< for each drive its way up to k of them
   std::vector<std::vector<double>> backward_;
   std::vector<Pieces> last_;  ///< for each drive, of the panel that was asked for last
