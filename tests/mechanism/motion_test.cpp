@@ -434,5 +434,32 @@ TEST(FindRange, OfAParallelogramHasNoLimits) {
   EXPECT_FALSE(range.backward);
 }
 
+// A double rocker that turns round at its limits: back from the first it passes its start. A law that has no
+// value before t = 0 cannot take it farther, which is no limit.
+TEST(Motion, IsRefusedWhereItsLawEndsBeforeItsLimit) {
+  MotionOptions options;
+  options.positions = 7;
+  options.at_limit = AtLimit::reverse;
+  const auto rocker = [](const std::string& speed) {
+    return four_bar(60, 70, 80, 100, speed, "30 deg", "[100, 80]");
+  };
+  options.until = 6;
+  try {
+    solve_motion(rocker("2 + 0.001*sqrt(time) rad/s"), options);
+    FAIL() << "it runs back to where its law has no value";
+  } catch (const MechanismError& error) {
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr("the speed of drive 'crank' has no value before t = 0 s, and from its limit the drive "
+                  "runs back in time, farther than that; expected a law that has values back to the "
+                  "other limit\n  remedy: let it stop there, at_limit = \"stop\" in [motion], or write "
+                  "the law so that it goes on before that"));
+  }
+  // One that has them there, and one that does not come so far.
+  EXPECT_EQ(solve_motion(rocker("2 + 0.001*time rad/s"), options).times.size(), 7U);
+  options.until = 1;
+  EXPECT_EQ(solve_motion(rocker("2 + 0.001*sqrt(time) rad/s"), options).times.size(), 7U);
+}
+
 }  // namespace
 }  // namespace oblique::mechanism

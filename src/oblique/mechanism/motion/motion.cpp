@@ -151,6 +151,28 @@ MotionLimits find_range(const Mechanism& mechanism, const Structure& structure) 
   return range;
 }
 
+namespace {
+
+/// Refuses a drive that is to run back to where its law has no value: no limit is there to turn it round.
+void check_law_behind(const Mechanism& mechanism, double low, double high) {
+  constexpr double kBehind = 1e-6;  // of the time between the limits
+  for (const Drive& drive : mechanism.drives) {
+    if (std::isfinite(law_at(drive, low - kBehind * (high - low)).rate)) continue;
+    throw MechanismError(
+        MechanismError::Kind::request,
+        text::Diagnostic{
+            drive.place,
+            fmt::format("the speed of drive '{}' has no value before t = {:.6g} s, and from its limit the "
+                        "drive runs back in time, farther than that",
+                        drive.name, low),
+            "a law that has values back to the other limit",
+            "let it stop there, at_limit = \"stop\" in [motion], or write the law so that it goes on before "
+            "that"});
+  }
+}
+
+}  // namespace
+
 std::optional<double> time_at_value(const Mechanism& mechanism, double value) {
   const Drive& drive = first_drive(mechanism);
   double way = value - drive.start;
@@ -199,6 +221,8 @@ std::vector<MotionEvent> visit_motion(const Mechanism& mechanism, const Structur
   std::vector<DriveState> drives(mechanism.drives.size());
   Configuration backwards;
   const Reversal reversal(low, high);
+  if (at_limit == AtLimit::reverse && range.backward && end > high + (high - low))
+    check_law_behind(mechanism, low, high);
   for (int k = 0; k < options.positions; ++k) {
     const double time = end * k / (options.positions - 1);
     double there = time, direction = 1;
