@@ -3,12 +3,14 @@
 
 #include <oblique/commission/judge.h>
 #include <oblique/commission/on_machine.h>
+#include <oblique/compare/branch.h>
 #include <oblique/diagram/diagram_writer.h>
 #include <oblique/diagram/flatten.h>
 #include <oblique/diagram/machine_profile.h>
 #include <oblique/machine/component_list.h>
 #include <oblique/machine/realise.h>
 #include <oblique/machine/sheets.h>
+#include <oblique/report/comparison_report.h>
 #include <oblique/report/component_list_text.h>
 #include <oblique/report/judgement_text.h>
 
@@ -44,11 +46,20 @@ py::tuple table_of(const machine::Sheet& sheet) {
 
 py::dict patched(const MechanismModel& model, const Library& library, const py::dict& asked) {
   const patch::PatchOptions options = patch_options(asked);
-  const commission::JudgedPatch made =
-      unlocked([&](SignalWatch&) { return commission::judged_patch(model.mechanism, *library, options); });
+  commission::JudgedPatch made;
+  std::optional<double> off_branch;
+  unlocked([&](SignalWatch&) {
+    made = commission::judged_patch(model.mechanism, *library, options);
+    off_branch = compare::drive_off_branch(model.mechanism, made, *library);
+    return 0;
+  });
   py::dict all;
   all["text"] = to_str(diagram::write_diagram(made.diagram));
   all["judgement"] = told(made.judgement);
+  if (off_branch) {
+    all["judgement"]["text"] = to_str(report::judgement_text(made.judgement, python_words()) +
+                                      report::left_branch_text(model.mechanism, *off_branch, python_words()));
+  }
   all["options"] = told(made.options, model.mechanism);
   return all;
 }

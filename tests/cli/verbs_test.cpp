@@ -18,6 +18,7 @@ namespace {
 
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST_F(Verbs, VersionTellsOfTheSolverToo) {
   const Outcome outcome = oblique("--version");
@@ -215,6 +216,30 @@ TEST_F(Verbs, PatchPrintsToStdoutWithoutAFile) {
   EXPECT_THAT(outcome.err, HasSubstr("its servo loops come to rest everywhere"));
   EXPECT_THAT(oblique("patch diagrams/mechanisms/four-bar.toml --unit '0.1 m'").err,
               HasSubstr("warning: it overloads the machine"));
+}
+
+// A slider-crank beside a dead centre at 270°, where the gradient goes over into the other assembly mode.
+TEST_F(Verbs, PatchTellsOfAModeThatItsRunLeaves) {
+  std::ofstream(file("crank.toml")) << R"(format = "oblique-mechanism/1"
+[units]
+length = "mm"
+[frame]
+A = [0, 0]
+X = [100, 0]
+[bodies]
+AB = { points = ["A", "B"], length = 30 }
+BC = { points = ["B", "C"], length = 50.0001 }
+[slides]
+piston = { point = "C", along = ["A", "X"], offset = 20 }
+[drives]
+crank = { turns = "AB", about = "A", speed = "60 rpm", start = "0 deg" }
+[sketch]
+C = [75, 20]
+)";
+  const std::string patch = "patch " + file("crank.toml") + " -o " + file("patched.toml");
+  EXPECT_THAT(oblique(patch + " --method gradient").err,
+              HasSubstr("warning: its run goes over into another assembly mode, from crank = 27"));
+  EXPECT_THAT(oblique(patch).err, Not(HasSubstr("assembly mode")));
 }
 
 // With the crank upright B = (0, 1): |BD|² = 17, and C is where circles of 3.5 about B and of 3 about D meet.

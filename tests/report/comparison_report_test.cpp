@@ -44,5 +44,19 @@ TEST(ComparisonReport, SaysWhichRunLeftItsBranchAndWhereThatBegins) {
   EXPECT_EQ(json["runs"][1]["left_branch"], std::numbers::pi / 2);
 }
 
+TEST(ComparisonReport, TellsWhereAPatchLeavesItsBranch) {
+  mechanism::Mechanism mechanism;
+  mechanism.length_unit = "mm";
+  mechanism.drives.resize(1);
+  mechanism.drives.front().name = "crank";
+  EXPECT_EQ(
+      left_branch_text(mechanism, -std::numbers::pi / 2),
+      "warning: its run goes over into another assembly mode, from crank = 270° on, and its points are "
+      "not the mechanism's then: it passes too near a dead centre; 'compare' tells how other methods and "
+      "gains do\n");
+  mechanism.drives.front().slide = 0;
+  EXPECT_THAT(left_branch_text(mechanism, 12.5), HasSubstr("from crank = 12.5 mm on"));
+}
+
 }  // namespace
 }  // namespace oblique::report

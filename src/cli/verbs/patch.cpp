@@ -7,8 +7,10 @@
 
 #include <oblique/mechanism/model/read_mechanism.h>
 
+#include <oblique/compare/branch.h>
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/diagram_writer.h>
+#include <oblique/report/comparison_report.h>
 #include <oblique/report/file_kind.h>
 #include <oblique/report/judgement_text.h>
 #include <oblique/text/file.h>
@@ -94,12 +96,15 @@ ExitStatus patch_or_refuse(const Session& session, const PatchRequest& request) 
   const commission::JudgedPatch patched = commission::judged_patch(mechanism, library, options);
   if (!request.machine.empty()) return patch_for_machine(library, request, mechanism, patched);
   const std::string written = diagram::write_diagram(patched.diagram);
+  std::string judgement = report::judgement_text(patched.judgement, command_line());
+  if (const auto drive = compare::drive_off_branch(mechanism, patched, library))
+    judgement += report::left_branch_text(mechanism, *drive, command_line());
   if (request.output.empty()) {
-    note(report::judgement_text(patched.judgement, command_line()));
+    note(judgement);
     print(written);
   } else {
     save(request.output, written);
-    note(report::judgement_text(patched.judgement, command_line()));
+    note(judgement);
     note(fmt::format("run it with: oblique run {}\n", request.output));
   }
   return ExitStatus::done;

@@ -7,6 +7,7 @@
 #include <oblique/compare/patched_run.h>
 #include <oblique/mechanism/solver/group_solver.h>
 #include <oblique/mechanism/structure/structure.h>
+#include <oblique/solve/solve_error.h>
 
 namespace oblique::compare {
 namespace {
@@ -82,6 +83,26 @@ std::optional<std::size_t> row_off_branch(const mechanism::Mechanism& mechanism,
     }
   }
   return std::nullopt;
+}
+
+std::optional<double> drive_off_branch(const mechanism::Mechanism& mechanism,
+                                       const commission::JudgedPatch& patched,
+                                       const diagram::BlockLibrary& library) {
+  constexpr std::int64_t kMostSteps = 100'000;  // half a second
+  const mechanism::Mechanism within = patch::within_range(mechanism);
+  patch::PatchOptions options = patched.options;
+  options.samples = mechanism::rows_over_motion(within, CompareOptions().positions);
+  const PatchedMechanism looked_at(patch_named(within, options), library);
+  try {
+    const RecordedRun recorded = run_recorded(looked_at, "", options.tolerance, {}, {}, kMostSteps);
+    const mechanism::Motion exact = mechanism::solve_motion(within, options.samples);
+    const Distances error = distances(within, looked_at.flat, recorded.run.trajectory, exact);
+    const auto row = row_off_branch(within, mechanism::decompose(within), looked_at.flat,
+                                    recorded.run.trajectory, exact, error.along);
+    return row ? std::optional(exact.drives[*row].front().value) : std::nullopt;
+  } catch (const solve::SolveError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace oblique::compare

@@ -187,12 +187,26 @@ std::string orders_of(const compare::Comparison& comparison, const RowHead& head
       comparison.size, unit, table.text());
 }
 
+std::string drive_text(bool turning, const std::string& unit, double value) {
+  if (!turning) return fmt::format("{:.4g} {}", value, unit);
+  const double degrees = std::fmod(value * 180 / std::numbers::pi, 360);
+  return fmt::format("{:.4g}°", degrees < 0 ? degrees + 360 : degrees);
+}
+
 }  // namespace
 
 std::string drive_text(const compare::Comparison& comparison, double value) {
-  if (!comparison.turning) return fmt::format("{:.4g} {}", value, comparison.unit);
-  const double degrees = std::fmod(value * 180 / std::numbers::pi, 360);
-  return fmt::format("{:.4g}°", degrees < 0 ? degrees + 360 : degrees);
+  return drive_text(comparison.turning, comparison.unit, value);
+}
+
+std::string left_branch_text(const mechanism::Mechanism& mechanism, double drive,
+                             const text::Vocabulary& vocabulary) {
+  const mechanism::Drive& first = mechanism.drives.front();
+  return fmt::format(
+      "warning: its run goes over into another assembly mode, from {} = {} on, and its points are not the "
+      "mechanism's then: it passes too near a dead centre; {} tells how other methods and gains do\n",
+      first.name, drive_text(!first.slide, mechanism.length_unit, drive),
+      vocabulary.action(text::Action{"compare"}));
 }
 
 nlohmann::ordered_json to_json(const compare::Comparison& comparison, bool timings) {

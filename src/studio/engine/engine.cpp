@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <oblique/commission/judge.h>
+#include <oblique/compare/branch.h>
 #include <oblique/diagram/diagram_reader.h>
 #include <oblique/diagram/diagram_writer.h>
 #include <oblique/diagram/flatten.h>
@@ -20,6 +21,7 @@
 #include <oblique/mechanism/structure/structure.h>
 #include <oblique/network/assembly/network.h>
 #include <oblique/network/program/program.h>
+#include <oblique/report/comparison_report.h>
 #include <oblique/report/file_kind.h>
 #include <oblique/report/judgement_text.h>
 #include <oblique/report/motion_text.h>
@@ -244,11 +246,14 @@ Answer Engine::patch(const std::string& text, const std::string& name, const std
     expect_kind(text, name, FileKind::mechanism, "a patch");
     patch::PatchOptions how = patch_options(asked);
     how.force = asked.flag("force");
-    const commission::JudgedPatch patched =
-        commission::judged_patch(mechanism::parse_mechanism(text, name), *library_, how);
+    const mechanism::Mechanism mechanism = mechanism::parse_mechanism(text, name);
+    const commission::JudgedPatch patched = commission::judged_patch(mechanism, *library_, how);
+    std::string judgement = report::judgement_text(patched.judgement);
+    if (const auto drive = compare::drive_off_branch(mechanism, patched, *library_))
+      judgement += report::left_branch_text(mechanism, *drive);
     Answer made;
     made.object["text"] = diagram::write_diagram(patched.diagram);
-    made.object["judgement"] = report::judgement_text(patched.judgement);
+    made.object["judgement"] = judgement;
     made.object["split"] = patched.options.split;
     if (patched.options.slower) made.object["slower"] = *patched.options.slower;
     return made;
